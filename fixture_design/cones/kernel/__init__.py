@@ -1,0 +1,24 @@
+"""The decisions that everything else waits for, behind one interface of four functions.
+
+* `double_description`: both forms of a cone, with incidence; `DoubleDescription.add_row` goes on from any of them.
+* `tucker_partition`: which rows balance and which motion leaves the others: closure, interior, membership, redundancy.
+* `minimum_norm_point`: the nearest point of a hull to the origin, for margins.
+
+They take unit rows and a relative zero, and report the values they decided on. `NAME` says which implementation runs.
+"""
+
+from fixture_design.cones.kernel.double_description import DoubleDescription, double_description
+from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
+from fixture_design.cones.kernel.tucker import TuckerPartition, positive_balance, tucker_partition
+
+NAME = "numpy"
+
+__all__ = [
+    "NAME",
+    "DoubleDescription",
+    "TuckerPartition",
+    "double_description",
+    "minimum_norm_point",
+    "positive_balance",
+    "tucker_partition",
+]

@@ -1,0 +1,73 @@
+"""Unions of polyhedral convex cones: admissible displacements are one (2-9), their polar is a cone again (2-37)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from fixture_design.cones.cone import PolyhedralConvexCone, require_same_dimension
+from fixture_design.cones.convert import convert
+from fixture_design.cones.membership import element, interior, nonzero, subset
+from fixture_design.cones.polar import convex_sum, dual
+from fixture_design.errors import ConeError
+from fixture_design.tolerances import DEFAULT, Tolerances
+
+
+@dataclass(frozen=True, eq=False)
+class ConeUnion:
+    """A_1 u ... u A_N, N >= 1, in one R^d. Not convex in general; nothing is computed when it is built.
+
+    Raises:
+        ConeError: no cone at all (the empty set is not a cone: every cone holds o).
+        DimensionError: cones of different dimensions.
+    """
+
+    cones: tuple[PolyhedralConvexCone, ...]
+
+    def __post_init__(self) -> None:
+        if not self.cones:
+            raise ConeError("a union needs at least one cone; the smallest is {o}")
+        require_same_dimension(*self.cones)
+
+    @classmethod
+    def of(cls, cones: Iterable[PolyhedralConvexCone]) -> ConeUnion:
+        return cls(tuple(cones))
+
+    @property
+    def dimension(self) -> int:
+        return self.cones[0].dimension
+
+    def __iter__(self) -> Iterator[PolyhedralConvexCone]:
+        return iter(self.cones)
+
+    def __len__(self) -> int:
+        return len(self.cones)
+
+
+def union_nonzero(union: ConeUnion, tolerances: Tolerances = DEFAULT) -> bool:
+    """Whether some A_n holds more than o: the negation of form closure (2-48, Table 1)."""
+    return any(nonzero(cone, tolerances) for cone in union)
+
+
+def union_interior(union: ConeUnion, tolerances: Tolerances = DEFAULT) -> bool:
+    """Whether the union has interior: some A_n has, since cones without interior do not fill a ball (2-51)."""
+    return any(interior(cone, tolerances) for cone in union)
+
+
+def union_element(vector: ArrayLike, union: ConeUnion, tolerances: Tolerances = DEFAULT) -> bool:
+    """Whether the vector is in some A_n."""
+    return any(element(vector, cone, tolerances) for cone in union)
+
+
+def union_dual(union: ConeUnion, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
+    """F = (A_1 u ... u A_N)* = (A_1 + ... + A_N)*  (2-37, 2-58; Table 3): a single cone.
+
+    A cone that the sum already contains is not added again.
+    """
+    total = convert(union.cones[0], tolerances)
+    for cone in union.cones[1:]:
+        if not subset(cone, total, tolerances):
+            total = convert(convex_sum(total, cone, tolerances=tolerances), tolerances)
+    return dual(total)

@@ -1,0 +1,23 @@
+"""Contacts as unidirectional constraints (thesis 2.2): points, normals with their logic, face vectors, friction."""
+
+from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
+from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role
+from fixture_design.contacts.friction import friction_edges
+from fixture_design.contacts.wrench import face_vectors, motion_about_origin, motion_scaled, velocity
+
+__all__ = [
+    "ROLES",
+    "Clause",
+    "Constraints",
+    "Contact",
+    "Provenance",
+    "Role",
+    "Scale",
+    "constraints_of",
+    "face_vectors",
+    "friction_edges",
+    "motion_about_origin",
+    "motion_scaled",
+    "scale_of",
+    "velocity",
+]

@@ -1,0 +1,110 @@
+"""A contact: a point of the part and the facets it may not enter, as an AND of ORs of normals.
+
+The normal is the part's outward normal, pointing into the fixture. A motion q of the part is admissible at the contact
+if, in every clause, at least one of its normals n has d . q <= 0, with d the face vector of n (2-5, 2-6):
+
+* a tip on a facet           one clause with one normal
+* a tip on a convex edge     one clause, its facets as alternatives (the OR of 2.2.1)
+* a tip in a concave edge    one clause for each facet (the AND of 2.2.1)
+
+Normals are kept as they come, not normalised: (1, -1) is exact, (0.7071, -0.7071) is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from fixture_design.arrays import Point, read_only
+from fixture_design.errors import ContactError, DimensionError
+
+#: What an element or contact is for. Supports come up after clamping and locate nothing.
+Role = Literal["locator", "support", "clamp", "finger"]
+ROLES: tuple[Role, ...] = ("locator", "support", "clamp", "finger")
+
+#: One clause: the normals of which at least one must not be entered.
+Clause = tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a contact's normals come from, and how far off they may be.
+
+    Attributes:
+        kind: "exact" (decimals of a file, vertices of a facet), "fitted" (a smooth surface fitted to facets) or
+            "approximate" (a facet that stands for a piece of a curved surface).
+        normal_error: largest angle between the normal given and the true one [rad].
+    """
+
+    kind: Literal["exact", "fitted", "approximate"] = "exact"
+    normal_error: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """One contact of a layout, in the world frame.
+
+    Attributes:
+        name: unique in its layout.  role: what it is for.
+        point: p_WC, shape (3,) or planar (2,) [m].
+        clauses: AND over the outer tuple, OR over each inner one; normals of any length, same shape as ``point``.
+        friction: Coulomb coefficient, >= 0.
+        provenance: of the normals.
+        distance: signed distance between surface and tip as it was found [m], None for contacts given outright.
+        feature: name of the facet, edge or apex touched, None for contacts given outright.
+
+    Raises:
+        ContactError: no normal, zero or non-finite normal, non-finite point, negative or non-finite friction.
+        DimensionError: point and normals of different or unusable length.
+
+    Example:
+        >>> Contact.on_facet("P1", "locator", [1, 1], [0, 1]).dimension
+        3
+    """
+
+    name: str
+    role: Role
+    point: Point
+    clauses: tuple[Clause, ...]
+    friction: float = 0.0
+    provenance: Provenance = field(default_factory=Provenance)
+    distance: float | None = None
+    feature: str | None = None
+
+    def __post_init__(self) -> None:
+        point = read_only(self.point)
+        clauses = tuple(tuple(read_only(normal) for normal in clause) for clause in self.clauses)
+        object.__setattr__(self, "point", point)
+        object.__setattr__(self, "clauses", clauses)
+        if point.shape not in ((2,), (3,)):
+            raise DimensionError(f"contact {self.name!r}: a point has 2 or 3 coordinates, not shape {point.shape}")
+        if not np.isfinite(point).all():
+            raise ContactError(f"contact {self.name!r}: the point is not finite: {point.tolist()}")
+        if not clauses or not all(clauses):
+            raise ContactError(f"contact {self.name!r} has no normal")
+        for normal in self.normals:
+            if normal.shape != point.shape:
+                raise DimensionError(f"contact {self.name!r}: normal {normal.tolist()} for point {point.tolist()}")
+            if not np.isfinite(normal).all():
+                raise ContactError(f"contact {self.name!r}: a normal is not finite: {normal.tolist()}")
+            if not normal.any():
+                raise ContactError(f"contact {self.name!r}: a normal has zero length")
+        if not (np.isfinite(self.friction) and self.friction >= 0):
+            raise ContactError(f"contact {self.name!r}: friction must be a number >= 0, not {self.friction}")
+
+    @classmethod
+    def on_facet(cls, name: str, role: Role, point: object, normal: object, friction: float = 0.0) -> Contact:
+        """A contact with a single normal."""
+        return cls(name, role, read_only(point), ((read_only(normal),),), friction)
+
+    @property
+    def normals(self) -> tuple[Point, ...]:
+        """All normals, clause after clause."""
+        return tuple(normal for clause in self.clauses for normal in clause)
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of its face vectors: 3 in the plane, 6 in space."""
+        return 3 if len(self.point) == 2 else 6

@@ -1,0 +1,58 @@
+"""Wrenches, twists and face vectors: the one place for their order, signs and reference points.
+
+Thesis order: a displacement is dq = [dx; dtheta], a wrench p = [f; m]; moments and rotations are about the stated
+origin. In the plane dtheta and m are scalars: [dx, dy, dtheta], [fx, fy, m], and x X n = x ny - y nx.
+
+The face vector of a contact at x with outward normal n is  d = [n; x X n]  (2-5): admissible displacements have
+d . dq <= 0 (2-6), a contact pushes the part along -d, and loads it can balance are p = R d with R >= 0 (2-16).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fixture_design.arrays import Point, Points, Rows, Vector
+
+
+def face_vectors(points: Points, normals: Points) -> Rows:
+    """d = [n; x X n] for every row (2-5).
+
+    Args:
+        points: contact points x from the reference point, shape (m, p), p = 2 or 3 [m].
+        normals: outward normals of the part, shape (m, p), any length.
+
+    Returns:
+        shape (m, 3) in the plane, (m, 6) in space.
+    """
+    return np.concatenate([normals, cross(points, normals)], axis=1)
+
+
+def cross(points: Points, vectors: Points) -> Points:
+    """x X v row by row: shape (m, 1) in the plane, (m, 3) in space."""
+    if points.shape[1] == 2:
+        return (points[:, :1] * vectors[:, 1:] - points[:, 1:] * vectors[:, :1]).reshape(-1, 1)
+    return np.cross(points, vectors)
+
+
+def velocity(motion: Vector, point: Point) -> Point:
+    """dx + dtheta X x: how the part's point x moves under a displacement about the origin (2-3)."""
+    if len(motion) == 3:
+        return motion[:2] + motion[2] * np.array([-point[1], point[0]])
+    return motion[:3] + np.cross(motion[3:], point)
+
+
+def motion_about_origin(scaled: Vector, reference: Point, length: float) -> Vector:
+    """A motion in scaled coordinates [velocity of the reference point; rotation * length] as [dx; dtheta] about W's origin.
+
+    It pairs with rows [n; (x - reference) X n / length]: the products d . u are the same before and after.
+    """
+    plane = len(reference)
+    rotation = scaled[plane:] / length
+    moved = np.concatenate([scaled[:plane], rotation])
+    return np.concatenate([velocity(moved, -reference), rotation])
+
+
+def motion_scaled(motion: Vector, reference: Point, length: float) -> Vector:
+    """The inverse of `motion_about_origin`."""
+    plane = len(reference)
+    return np.concatenate([velocity(motion, reference), motion[plane:] * length])

@@ -1,0 +1,110 @@
+"""Exceptions that carry what was given, what was expected and what to try.
+
+Everything a user can cause derives from `InputError`; the command line prints its message and exits with 2. Whatever
+else escapes is a fault of the toolkit (exit code 4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+
+
+class FixtureDesignError(Exception):
+    """Base of all exceptions that this package raises on purpose."""
+
+
+class InputError(FixtureDesignError, ValueError):
+    """Something the user gave cannot be used.
+
+    Attributes:
+        problem: what is wrong, in one sentence.
+        source: the file it was read from, if any.
+        place: where in the file ("line 12, elements[2].role"), if known.
+        found: the offending value as text, if there is one.
+        expected: what would have been right, if that can be said.
+    """
+
+    def __init__(
+        self,
+        problem: str,
+        *,
+        source: str | Path | None = None,
+        place: str | None = None,
+        found: str | None = None,
+        expected: str | None = None,
+    ) -> None:
+        self.problem, self.source, self.place, self.found, self.expected = problem, source, place, found, expected
+        super().__init__(problem)
+
+    def __str__(self) -> str:
+        where = ": ".join(str(part) for part in (self.source, self.place) if part)
+        details = [f"found {self.found}" if self.found else "", f"expected {self.expected}" if self.expected else ""]
+        text = "; ".join([self.problem, *filter(None, details)])
+        return f"{where}: {text}" if where else text
+
+    def within(self, source: str | Path, place: str | None = None) -> InputError:
+        """The same error, with the file (and place) it was met in, where it did not know them yet."""
+        self.source = self.source or source
+        self.place = self.place or place
+        return self
+
+
+class FileFormatError(InputError):
+    """A file cannot be read, does not parse, or does not follow its schema."""
+
+
+class UnknownNameError(InputError):
+    """A name that should refer to something does not; the message lists the names there are."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], **where: str | Path | None) -> None:
+        names = sorted(known)
+        close = get_close_matches(name, names, n=1)
+        hint = f"did you mean {close[0]!r}? " if close else ""
+        self.name, self.known = name, names
+        super().__init__(f"no {kind} is called {name!r}; {hint}there are: {', '.join(names) or 'none'}", **where)
+
+
+class DimensionError(InputError):
+    """Arrays, cones or contacts of different dimensions were put together."""
+
+
+class ConeError(InputError):
+    """A cone operation cannot give its result (no form given, values not finite, size beyond the limits)."""
+
+
+class ContactError(InputError):
+    """A contact is not one: zero or non-finite normal, negative friction, nothing to touch with."""
+
+
+class GeometryError(InputError):
+    """A part's geometry cannot be used: not closed, empty, unreadable, or refused by the geometry engine."""
+
+
+class UnsupportedError(InputError):
+    """Valid input that this version of the toolkit does not evaluate yet."""
+
+
+class OffSurfaceError(GeometryError):
+    """An element does not reach the surface it should touch.
+
+    Attributes:
+        element: the element's name.  distance: signed distance [m].  feature: the nearest facet's name.
+    """
+
+    def __init__(self, element: str, part: str, distance: float, feature: str, gap: float) -> None:
+        self.element, self.distance, self.feature = element, distance, feature
+        side = "off the surface of" if distance > 0 else "inside"
+        super().__init__(
+            f"element {element!r} is {format_length(abs(distance))} {side} {part!r}; nearest: {feature}; "
+            f"move it there, or raise `surface_gap` ({format_length(gap)})"
+        )
+
+
+def format_length(metres: float) -> str:
+    """A length as people write it: 4.2 mm, 0.35 um, 1.2 m (input in metres)."""
+    for factor, unit in ((1.0, "m"), (1e3, "mm"), (1e6, "um")):
+        if abs(metres) * factor >= 1 or unit == "um":
+            return f"{metres * factor:.3g} {unit}"
+    raise AssertionError("unreachable: micrometres take everything")

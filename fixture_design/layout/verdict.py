@@ -1,0 +1,139 @@
+"""Verdicts: yes, no or undecided, each with the evidence that a checker can confirm without a solver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from fixture_design.arrays import Vector
+from fixture_design.cones import PolyhedralConvexCone
+from fixture_design.contacts import Contact
+from fixture_design.layout.layout import Requirement, Space
+
+
+class Answer(StrEnum):
+    """An answer; undecided is one of its own and never rounded."""
+
+    YES = "yes"
+    NO = "no"
+    UNDECIDED = "undecided"
+
+    @classmethod
+    def of(cls, truth: bool | None) -> Answer:
+        """True, False, or None for undecided."""
+        return cls.UNDECIDED if truth is None else cls.YES if truth else cls.NO
+
+    def negated(self) -> Answer:
+        return {Answer.YES: Answer.NO, Answer.NO: Answer.YES}.get(self, self)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A displacement [dx; dtheta] about W's origin, that every contact admits (or, if strict, that leaves all)."""
+
+    motion: Vector
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class Weights:
+    """Weights that balance the contacts' unit-normal wrenches, for one branch.
+
+    Attributes:
+        weights: for each contact one weight a normal, or a friction edge, clause after clause; those of alternatives
+            that the branch does not take are zero.
+        basis: (contact, index into its weights) of d independent rows of positive weight: the rank; empty where the
+            claim needs none.
+        choice: for each clause with alternatives that the branch settles, the alternative taken, as
+            (contact, clause, alternative); a clause that is not named may take any.
+        residual: |D^T w| / sum w, in dimensionless rows.
+    """
+
+    weights: Mapping[str, tuple[float, ...]]
+    basis: tuple[tuple[str, int], ...]
+    choice: tuple[tuple[str, int, int], ...]
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class Singular:
+    """Evidence for determinacy: the rank and, where it is short, a motion that no contact notices to first order."""
+
+    rank: int
+    motion: Vector | None
+    choice: tuple[tuple[str, int, int], ...]
+    residual: float
+
+
+Evidence = Motion | Singular | tuple[Weights, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """One answer about one group.
+
+    Attributes:
+        answer: None for an empty group.
+        margin: dimensionless, see DESIGN of the format; None where it was not computed.
+        evidence: a motion, a rank, or weights for every branch that needs them; None only if undecided or empty.
+        residual: the largest one of the evidence.
+        edges: number of friction edges in space, for force closure.
+        reason: why it is undecided, in words.
+    """
+
+    answer: Answer | None
+    margin: float | None = None
+    evidence: Evidence | None = None
+    residual: float | None = None
+    edges: int | None = None
+    reason: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class GroupVerdict:
+    """All findings about one group, and its sets: A as the cones of its union, F as one cone (Table 3).
+
+    The sets are about W's origin [m, rad, N, N m]; None for an empty group, and where the union was too large to list.
+    """
+
+    name: str
+    contacts: tuple[str, ...]
+    findings: Mapping[str, Finding]
+    admissible_displacements: tuple[PolyhedralConvexCone, ...] | None = None
+    admissible_forces: PolyhedralConvexCone | None = None
+    bidirectional: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class RequirementVerdict:
+    """Whether one requirement on one group holds; None for an empty group, which satisfies nothing."""
+
+    group: str
+    require: Requirement
+    answer: Answer | None
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """Everything `verify` found about a layout.
+
+    Attributes:
+        satisfied: None where nothing is required.
+        reference, length: of the dimensionless rows that margins and residuals are measured in [m].
+        run: version, kernel, tolerances.
+    """
+
+    name: str
+    source: str | None
+    space: Space
+    satisfied: Answer | None
+    groups: Mapping[str, GroupVerdict]
+    contacts: tuple[Contact, ...]
+    requirements: tuple[RequirementVerdict, ...]
+    notes: tuple[str, ...]
+    reference: Vector
+    length: float
+    run: Mapping[str, object] = field(default_factory=dict)
+
+

@@ -1,0 +1,79 @@
+"""Named tolerances: every threshold of the package, with its unit and its reason.
+
+All comparisons are made on dimensionless numbers: rows are recentred on the contacts, moments divided by a length, rows
+normalised. A quantity then counts as
+
+* zero       below ``zero`` = tie / 30,
+* non-zero   above ``near`` = 30 tie,
+* undecided  in between: the answer would depend on where exactly the line is drawn.
+
+Rounding of CAD data leaves 1e-15 to 1e-12 where exact arithmetic has a zero, and real fixtures have margins of 1e-6 or
+more, so the band in between is all but empty; what falls into it is reported and never guessed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+#: Unit round-off of float64 [-].
+ROUND_OFF = float(np.finfo(np.float64).eps) / 2
+
+#: Rows shorter than this, next to the longest one, are taken as zero rows [-]. Far below any tie, far above underflow.
+ZERO_ROW = 1e-150
+
+#: Residuals of weights and motions that a checker still accepts as a proof [-]: rounding of a few hundred products.
+WITNESS = 1e-10
+
+#: Largest distance between an element and the surface that it touches, unless the layout says otherwise [m].
+SURFACE_GAP = 1e-5
+
+#: Angle below which neighbouring triangles belong to one plane [rad]: well above the noise of float32 vertices on
+#: facets a thousand times wider than their vertices' rounding, well below any draft angle.
+COPLANAR_ANGLE = 1e-4
+
+#: Angle below which neighbouring facets may approximate one smooth surface [rad]: coarse exports have 10 degrees a strip.
+SMOOTH_ANGLE = float(np.radians(35.0))
+
+#: Vertices closer than this are one vertex, relative to the size of the part [-].
+MERGE_VERTICES = 1e-9
+
+#: The longest side of a real part lies between these [m]; outside, the unit of the mesh is probably another one.
+PLAUSIBLE_SIZE = (1e-3, 10.0)
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """The relative tolerance of all verdicts and the band that surrounds it.
+
+    Attributes:
+        tie: dimensionless numbers up to this size are one tie (exactly zero but for rounding).
+        band: factor between ``tie`` and the two edges of the undecided band.
+    """
+
+    tie: float = 1e-9
+    band: float = 30.0
+
+    @property
+    def zero(self) -> float:
+        """Largest number that is certainly a zero."""
+        return self.tie / self.band
+
+    @property
+    def near(self) -> float:
+        """Smallest number that is certainly not a zero."""
+        return self.tie * self.band
+
+    def at_offset(self, ratio: float) -> Tolerances:
+        """Tolerances for contacts whose distance from the origin is ``ratio`` times their own spread.
+
+        Coordinates at a distance keep fewer digits: tie is never below 100 u (1 + ratio), with u the unit round-off.
+        """
+        return Tolerances(max(self.tie, 100 * ROUND_OFF * (1 + ratio)), self.band)
+
+    def as_dict(self) -> dict[str, float]:
+        return asdict(self) | {"near": self.near, "zero": self.zero}
+
+
+DEFAULT = Tolerances()
