@@ -1,1 +1,93 @@
-"""placeholder"""
+"""Fixtures and grasps from the theory of polyhedral convex cones (S. Hirai, doctoral thesis, Kyoto University, 1991).
+
+Architecture
+============
+
+A part touched by a fixture may move a little or not at all. Every contact forbids half a space of small motions, so the
+motions that are left form a union of polyhedral convex cones, and the loads that the contacts can balance form the
+polar cone. Every question (does it locate, does it come out, does it hold) is a question about these cones::
+
+    URDF part + fixture --signed distance--> contacts --> cones --> verdicts with evidence
+
+The folders state the theory, and each imports only from those to its right::
+
+    cli > io > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
+
+* `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel` has
+  the three decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and
+  the point of a hull nearest to the origin. `cones.thesis` is CONVERT as the thesis has it, for comparison.
+* `contacts`: a contact is a point and an AND of ORs of normals; face vectors, friction cones; `Constraints` are the
+  same as flat arrays.
+* `layout`: the nouns: part, element, layout, group, verdict.
+* `analysis`: one file a question: form closure, accessibility, force closure, determinacy, hybrid control. Unions are
+  searched, not listed (`branches`); every answer comes with bounds on the margin that prove it (`bounds`).
+* `geometry`: contacts from URDF and mesh parts through Drake's signed distance, and from planar polygons.
+* `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.
+* `io`: files. `cli`: the command line.
+
+How an answer is decided
+========================
+
+For rows d_i scaled to unit length, s = min over |u| = 1 of max_i d_i . u is positive if and only if they close, negative
+if and only if some motion leaves them all, and zero in the degenerate cases that real fixtures are full of. s moves no
+more than the rows do. Weights that balance bound it from below, a motion bounds it from above; an answer is given where
+a bound clears the band around zero (`tolerances`), and is *undecided* otherwise, with the reason. Exact arithmetic on
+rounded coordinates would answer another question, so ties are ties within the tolerance.
+
+Conventions
+===========
+
+SI units and radians; everything in a file is in the world frame W. A displacement is [dx; dtheta], a wrench [f; m],
+moments and rotations about W's origin; planar: [dx, dy, dtheta], [fx, fy, m]. A contact's normal is the part's outward
+normal: d = [n; x X n], admissible motions have d . dq <= 0, and the contact pushes the part along -n.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from fixture_design.version import VERSION as __version__
+
+if TYPE_CHECKING:
+    from fixture_design.cones import PolyhedralConvexCone
+    from fixture_design.contacts import Contact
+    from fixture_design.io import read_layout, write_layout
+    from fixture_design.layout import Layout, Verdict
+    from fixture_design.verification import check, contacts_of, verify
+
+#: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
+_HOME = {
+    "Contact": "contacts",
+    "Layout": "layout",
+    "PolyhedralConvexCone": "cones",
+    "Verdict": "layout",
+    "check": "verification",
+    "contacts_of": "verification",
+    "read_layout": "io",
+    "verify": "verification",
+    "write_layout": "io",
+}
+
+__all__ = [
+    "Contact",
+    "Layout",
+    "PolyhedralConvexCone",
+    "Verdict",
+    "__version__",
+    "check",
+    "contacts_of",
+    "read_layout",
+    "verify",
+    "write_layout",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -5,7 +5,7 @@ Cones know nothing of contacts: everything here is about vectors in R^d.
 
 from fixture_design.cones.bidirection import bidirectional
 from fixture_design.cones.cone import PolyhedralConvexCone
-from fixture_design.cones.convert import convert, convert_rows
+from fixture_design.cones.convert import convert, convert_both, convert_rows
 from fixture_design.cones.membership import element, equal, interior, nonzero, subset
 from fixture_design.cones.polar import convex_sum, dual, intersect
 from fixture_design.cones.reduction import reduce
@@ -16,6 +16,7 @@ __all__ = [
     "PolyhedralConvexCone",
     "bidirectional",
     "convert",
+    "convert_both",
     "convert_rows",
     "convex_sum",
     "dual",

@@ -61,6 +61,14 @@ def convert(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Pol
     return cone
 
 
+def convert_both(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
+    """The same cone with both forms as CONVERT makes them: irreducible, lines and equalities complete and apart."""
+    known = convert(cone, tolerances)
+    spans = PolyhedralConvexCone(cone.dimension, span_form=known.span_form)
+    faces = convert(spans, tolerances)
+    return convert(PolyhedralConvexCone(cone.dimension, face_form=faces.face_form), tolerances)
+
+
 def convert_rows(rows: Rows, equalities: Rows, tolerances: Tolerances = DEFAULT) -> Conversion:
     """Extreme rays and lines of {x : rows . x <= 0, equalities . x = 0}.
 

@@ -19,8 +19,7 @@ def reduce(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Poly
     that of two that make each other redundant the earlier one stays: testing each against all others at once, as
     (4-16) does, would lose both. What stays is some of the vectors given, unchanged.
     """
-    reduced = PolyhedralConvexCone(cone.dimension)
-    face, span = reduced.face_form, reduced.span_form
+    face = span = None
     if cone.face_form is not None:
         faces, equalities = _irreducible(cone.faces, cone.equalities, tolerances)
         face = PolyhedralConvexCone.from_faces(faces, equalities, dimension=cone.dimension).face_form

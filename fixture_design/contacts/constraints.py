@@ -66,6 +66,17 @@ class Constraints:
             count *= number
         return count
 
+    def clause_values(self, products: Weights) -> Weights:
+        """For each clause the min over its alternatives of the max over their rows of ``products`` (one a row).
+
+        With products d . u it tells which clauses a motion u violates: those with a positive value.
+        """
+        by_alternative = np.full(len(self.clause), -np.inf)
+        np.maximum.at(by_alternative, self.alternative, products)
+        by_clause = np.full(len(self.contact), np.inf)
+        np.minimum.at(by_clause, self.clause, by_alternative)
+        return by_clause
+
     def alternatives_of(self, clause: int) -> Indices:
         """The alternatives of one clause."""
         return np.flatnonzero(self.clause == clause)

@@ -1,15 +1,17 @@
-"""The decisions that everything else waits for, behind one interface of four functions.
+"""The decisions that everything else waits for, behind one interface of a few functions.
 
 * `double_description`: both forms of a cone, with incidence; `DoubleDescription.add_row` goes on from any of them.
 * `tucker_partition`: which rows balance and which motion leaves the others: closure, interior, membership, redundancy.
 * `minimum_norm_point`: the nearest point of a hull to the origin, for margins.
+* `nonnegative_least_squares`: the nearest point of a cone to a vector.
 
 They take unit rows and a relative zero, and report the values they decided on. `NAME` says which implementation runs.
 """
 
 from fixture_design.cones.kernel.double_description import DoubleDescription, double_description
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
-from fixture_design.cones.kernel.tucker import TuckerPartition, positive_balance, tucker_partition
+from fixture_design.cones.kernel.nonnegative import nonnegative_least_squares
+from fixture_design.cones.kernel.tucker import TuckerPartition, tucker_partition
 
 NAME = "numpy"
 
@@ -19,6 +21,7 @@ __all__ = [
     "TuckerPartition",
     "double_description",
     "minimum_norm_point",
-    "positive_balance",
+    "nonnegative_least_squares",
+
     "tucker_partition",
 ]

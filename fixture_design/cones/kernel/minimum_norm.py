@@ -30,21 +30,26 @@ def minimum_norm_point(rows: Rows) -> tuple[Vector, Weights]:
     corral = [int(np.argmin(np.einsum("ij,ij->i", rows, rows)))]
     barycentric = np.ones(1)
     point = rows[corral[0]].copy()
+    length = float(np.linalg.norm(point))
+    refused = np.zeros(count, dtype=bool)
     # every major cycle shortens the point, so no corral returns; the bound is a guard against rounding
     for _ in range(20 * count + 200):
-        length = float(np.linalg.norm(point))
         if length <= _ARRIVED * size:
             break
-        direction = point / length
-        heights = rows @ direction
+        heights = rows @ (point / length)
+        heights[refused] = np.inf
+        heights[corral] = np.inf
         entering = int(np.argmin(heights))
-        if heights[entering] >= length - _IMPROVES * size or entering in corral:
+        if heights[entering] >= length - _IMPROVES * size:
             break
         new_corral, new_barycentric = _descend(rows, [*corral, entering], np.append(barycentric, 0.0))
         new_point = new_barycentric @ rows[new_corral]
-        if not np.linalg.norm(new_point) < length:
-            break
-        corral, barycentric, point = new_corral, new_barycentric, new_point
+        new_length = float(np.linalg.norm(new_point))
+        # a row may improve by less than rounding while the next one goes all the way
+        refused[entering] = new_length >= length
+        if new_length < length:
+            corral, barycentric, point, length = new_corral, new_barycentric, new_point, new_length
+            refused[:] = False
     weights = np.zeros(count)
     weights[corral] = barycentric
     return point, weights

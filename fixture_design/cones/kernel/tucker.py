@@ -20,10 +20,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from fixture_design.arrays import Mask, Rows, Vector, Weights
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
-from fixture_design.cones.kernel.nonnegative import nonnegative_least_squares
+
+#: Singular values below this, relative to the largest, are rounding in the core's pseudo-inverse [-].
+_PSEUDO_RANK = 1e-14
+#: Projected weights are taken as they are if the smallest is at least this part of the largest [-].
+_EVEN_ENOUGH = 1e-3
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,7 @@ def tucker_partition(rows: Rows, zero: float) -> TuckerPartition:
     free = np.eye(dimension)
     zero_max, nonzero_min = 0.0, np.inf
     motion = None
+    core, core_weights = np.zeros(0, dtype=np.int64), np.zeros(0)
     while len(free) and not balanced.all():
         projected = rows @ free.T
         lengths = np.linalg.norm(projected, axis=1)
@@ -96,27 +102,37 @@ def tucker_partition(rows: Rows, zero: float) -> TuckerPartition:
         chosen = rest[support > zero]
         nonzero_min = min(nonzero_min, float(support[support > zero].min()))
         balanced[chosen] = True
-        span, free, smallest, dropped = _extend(span, rows[chosen], zero)
+        core, core_weights = _with_level(rows, core, core_weights, chosen, support[support > zero] / lengths[chosen])
+        added, free, smallest, dropped = _split(unit[support > zero], free, zero)
+        span = np.vstack([span, added])
         nonzero_min, zero_max = min(nonzero_min, smallest), max(zero_max, dropped)
     if not len(free):
         balanced[:] = True  # the balanced rows span everything, so every other row balances against them
+    if balanced.any() and len(free):
+        # the steps have lost digits; the balanced rows' own singular vectors are as orthogonal to them as can be
+        right = np.linalg.svd(rows[balanced], full_matrices=True)[2]
+        span, free = right[: len(span)], right[len(span) :]
     if motion is not None:
+        motion = (motion @ free.T) @ free
         motion = motion / np.linalg.norm(motion)
     if balanced.any():
-        weights[balanced] = positive_balance(rows[balanced], zero)
+        weights[balanced] = positive_balance(rows, balanced, core, core_weights, zero)
     return TuckerPartition(balanced, weights, span, motion, zero_max, nonzero_min)
 
 
-def _extend(span: Rows, rows: Rows, zero: float) -> tuple[Rows, Rows, float, float]:
-    """Orthonormal bases of the span with ``rows`` added and of its complement; smallest kept, largest dropped value."""
-    projected = rows - (rows @ span.T) @ span
-    projected = projected / np.linalg.norm(projected, axis=1, keepdims=True)
-    _, values, right = np.linalg.svd(projected, full_matrices=False)
-    kept = values > zero
-    span = np.vstack([span, right[kept]])
-    smallest = float(values[kept].min()) if kept.any() else np.inf
-    dropped = float(values[~kept].max()) if (~kept).any() else 0.0
-    return span, _complement(span), smallest, dropped
+def _split(balanced: Float[np.ndarray, "k f"], free: Float[np.ndarray, "f d"], zero: float) -> tuple[Rows, Rows, float, float]:
+    """Orthonormal bases of the part of ``free`` that the balanced rows span and of the rest of it.
+
+    The rows are given in coordinates of ``free``: a row that was almost along the old span has lost its digits in
+    other coordinates, and the new basis would not be orthogonal to the old one.
+
+    Returns:
+        the two bases, the smallest singular value kept and the largest dropped.
+    """
+    _, values, right = np.linalg.svd(balanced, full_matrices=True)
+    rank = int(np.sum(values > zero))
+    dropped = float(values[rank]) if rank < len(values) else 0.0
+    return right[:rank] @ free, right[rank:] @ free, float(values[rank - 1]), dropped
 
 
 def _complement(span: Rows) -> Rows:
@@ -126,23 +142,48 @@ def _complement(span: Rows) -> Rows:
     return np.linalg.svd(span, full_matrices=True)[2][len(span) :]
 
 
-def positive_balance(rows: Rows, zero: float) -> Weights:
-    """Weights w > 0, sum 1, with D^T w = 0, for rows that balance; as even as one projection makes them.
+def _with_level(
+    rows: Rows, core: np.ndarray, core_weights: Weights, chosen: np.ndarray, chosen_weights: Weights
+) -> tuple[np.ndarray, Weights]:
+    """Positive balanced weights on the rows of earlier levels and of this one.
 
-    The nearest balanced weights to (1, ..., 1) are positive for most sets; else every row's own balance (2-111) is
-    added up, which is positive by construction, and the sum is projected once more to take its rounding out.
+    The new rows balance up to something in the span of the core; the core takes that up, with any sign, and enough of
+    its own positive balance makes the signs right.
     """
-    left = np.linalg.svd(rows, full_matrices=False)
-    rank = int(np.sum(left[1] > zero))
-    across = left[0][:, :rank]
-    weights = np.ones(len(rows))
-    weights = weights - across @ (across.T @ weights)
-    if weights.min() > 1e-3 * weights.max():
-        return weights / weights.sum()
-    total = np.zeros(len(rows))
-    for index, row in enumerate(rows):
-        own = np.insert(nonnegative_least_squares(np.delete(rows, index, axis=0).T, -row), index, 1.0)
-        total += own / own.sum()
+    if not len(core):
+        return chosen, chosen_weights / chosen_weights.sum()
+    taken_up = _taken_up(rows[core], core_weights, chosen_weights @ rows[chosen])
+    weights = np.concatenate([taken_up + core_weights, chosen_weights])
+    return np.concatenate([core, chosen]), weights / weights.sum()
+
+
+def _taken_up(core_rows: Rows, core_weights: Weights, wrenches: np.ndarray) -> np.ndarray:
+    """Nonnegative weights of the core that balance wrenches from its span, shape (..., d) to (..., k)."""
+    signed = -wrenches @ np.linalg.pinv(core_rows, rcond=_PSEUDO_RANK)
+    lift = np.maximum(0.0, np.max(-signed / core_weights, axis=-1, keepdims=True))
+    return np.maximum(signed + lift * core_weights, 0.0)
+
+
+def positive_balance(
+    rows: Rows, balanced: Mask, core: np.ndarray, core_weights: Weights, zero: float
+) -> Weights:
+    """Weights w > 0, sum 1, with D^T w = 0, for the rows that balance; as even as one projection makes them.
+
+    The nearest balanced weights to (1, ..., 1) are positive for most sets; else every row is balanced by the core, the
+    few rows that span what all of them do, and the sum is projected once more to take its rounding out.
+    """
+    chosen = rows[balanced]
+    across, values, _ = np.linalg.svd(chosen, full_matrices=False)
+    across = across[:, : int(np.sum(values > zero))]
+    even = 1.0 - across @ across.sum(axis=0)
+    if even.min() > _EVEN_ENOUGH * even.max():
+        return even / even.sum()
+    everywhere = np.zeros(len(rows))
+    own = _taken_up(rows[core], core_weights, chosen)
+    totals = 1.0 + own.sum(axis=1, keepdims=True)
+    everywhere[core] = (own / totals).sum(axis=0)
+    everywhere[balanced] += 1.0 / totals[:, 0]
+    total = everywhere[balanced]
     projected = total - across @ (across.T @ total)
     best = projected if projected.min() > 0 else total
     return best / best.sum()

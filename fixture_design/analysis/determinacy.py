@@ -1,0 +1,138 @@
+"""Deterministic locating (H. Asada, A. By, 1985): the locators' distances fix the part's position to first order.
+
+That is so if and only if no motion leaves every contact's distance unchanged: the face vectors have full rank, in every
+branch where there are alternatives. A clause with an alternative in the span of the rows chosen so far cannot add to
+the rank, so that alternative is taken without looking at the others; every branching then raises the rank, and the
+search is polynomial in the number of contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice, product
+
+import numpy as np
+
+from fixture_design.analysis.restraint import Restraint, motion_in_world
+from fixture_design.arrays import Rows, Vector, Weights
+from fixture_design.contacts import Constraints, motion_scaled
+from fixture_design.layout import Answer, Finding, Singular
+from fixture_design.tolerances import Tolerances
+
+#: Branches whose singular values are looked at for the margin.
+MAX_BRANCHES = 1024
+
+
+def deterministic(restraint: Restraint) -> Finding:
+    """Whether the face vectors have rank d in every branch.
+
+    Returns:
+        yes with the rank; no with the rank of the worst branch and a motion that it does not notice; undecided with a
+        reason. The margin is the d-th singular value in the report's scale, smallest over the branches, 0 with fewer
+        rows than d; None if there are more than MAX_BRANCHES branches.
+    """
+    constraints = restraint.constraints
+    lengths = np.linalg.norm(constraints.rows, axis=1)
+    search = _RankSearch(
+        constraints,
+        constraints.rows / lengths[:, None],
+        constraints.errors / lengths,
+        restraint.tolerances.at_offset(constraints.scale.offset),
+    )
+    outcome = search.visit([a[0] for a in search.alternatives if len(a) == 1])
+    margin = determinacy_margin(restraint.reported)
+    dimension = constraints.rows.shape[1]
+    if outcome is None:
+        return Finding(Answer.YES, margin, Singular(dimension, None, (), 0.0), 0.0)
+    if outcome.motion is None:
+        reason = f"the smallest singular value is {outcome.value:.1e}, neither zero nor clear of it"
+        return Finding(Answer.UNDECIDED, margin, reason=reason)
+    motion = motion_in_world(outcome.motion, constraints.scale)
+    scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)
+    rows = restraint.reported.rows[restraint.reported.rows_of(outcome.choice)]
+    residual = float(np.abs(rows @ scaled).max() / np.linalg.norm(scaled))
+    choice = restraint.choice(outcome.choice, constraints)
+    return Finding(Answer.NO, margin, Singular(outcome.rank, motion, choice, residual), residual)
+
+
+def determinacy_margin(constraints: Constraints) -> float | None:
+    """Smallest d-th singular value over the branches; None if there are too many to look at."""
+    if constraints.branch_count > MAX_BRANCHES:
+        return None
+    alternatives = [constraints.alternatives_of(c).tolist() for c in range(len(constraints.contact))]
+    branches = islice(product(*alternatives), MAX_BRANCHES)
+    return min(_last_singular_value(constraints.rows[constraints.rows_of(b)]) for b in branches)
+
+
+def _last_singular_value(rows: Rows) -> float:
+    if len(rows) < rows.shape[1]:
+        return 0.0
+    return float(np.linalg.svd(rows, compute_uv=False)[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class _Deficient:
+    """A branch without full rank (with the motion it does not notice) or too near to tell (without)."""
+
+    choice: tuple[int, ...]
+    rank: int
+    value: float
+    motion: Vector | None
+
+
+@dataclass(frozen=True, eq=False)
+class _RankSearch:
+    """Looks for a branch whose unit rows have less than full rank."""
+
+    constraints: Constraints
+    rows: Rows
+    errors: Weights
+    tolerances: Tolerances
+
+    @property
+    def alternatives(self) -> list[list[int]]:
+        return [self.constraints.alternatives_of(c).tolist() for c in range(len(self.constraints.contact))]
+
+    def visit(self, choice: Sequence[int]) -> _Deficient | None:
+        """The first deficient branch that contains the choice, a doubtful one if there is no deficient one, or None."""
+        rows = self.constraints.rows_of(choice)
+        values, right = _singular(self.rows[rows])
+        error = float(np.linalg.norm(self.errors[rows]))
+        if values[-1] > self.tolerances.near + error:
+            return None
+        unnoticed = right[values <= self.tolerances.near + error]
+        clause, options = self._next(choice, unnoticed)
+        if clause is None:
+            certain = values[-1] <= self.tolerances.zero and not np.any(self.errors[rows])
+            rank = int(np.sum(values > self.tolerances.tie))
+            return _Deficient(tuple(choice), rank, float(values[-1]), right[-1] if certain else None)
+        doubtful = None
+        for alternative in options:
+            found = self.visit([*choice, alternative])
+            if found is not None and found.motion is not None:
+                return found
+            doubtful = doubtful or found
+        return doubtful
+
+    def _next(self, choice: Sequence[int], unnoticed: Rows) -> tuple[int | None, list[int]]:
+        """The next clause and the alternatives of it to try, those that add least to the rank first."""
+        settled = set(self.constraints.clause[list(choice)].tolist())
+        best: tuple[float, int, list[int]] | None = None
+        for clause, options in enumerate(self.alternatives):
+            if clause in settled:
+                continue
+            adds = np.linalg.norm(self.rows[self.constraints.rows_of(options)] @ unnoticed.T, axis=1)
+            order = [options[i] for i in np.argsort(adds)]
+            if adds.min() <= self.tolerances.zero and not np.any(self.errors):
+                return clause, order[:1]
+            if best is None or adds.min() < best[0]:
+                best = (float(adds.min()), clause, order)
+        return (None, []) if best is None else best[1:]
+
+
+def _singular(rows: Rows) -> tuple[np.ndarray, Rows]:
+    """All d singular values (zeros where there are fewer rows) and the right singular vectors, largest first."""
+    dimension = rows.shape[1]
+    _, values, right = np.linalg.svd(rows, full_matrices=True)
+    return np.pad(values, (0, dimension - len(values))), right

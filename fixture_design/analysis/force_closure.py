@@ -1,0 +1,98 @@
+"""Force closure (thesis 2.3 (c), 2.6 (c), 2.7 (c)): the contacts can balance every load.
+
+F = R^6 if and only if F* = {o} (2-54), asked of the rows of the friction cones' edges instead of the normals' (2-81,
+2-82). Several ORs: closed if and only if every branch is. Without friction it is form closure.
+
+In the plane friction cones are polyhedral and the answer is exact. In space an inner and an outer pyramid bracket them:
+the inner one closed means yes; a motion that the cone itself cannot stop means no, whichever pyramid suggested it; else
+both get more edges. What is still open at the last number of edges is a tie with the friction cone's boundary.
+
+Yes says that a balance exists for every load (the contacts *can* hold), not that friction will find it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fixture_design.analysis.branches import Settled, UnionQuestions
+from fixture_design.analysis.margin import closure_margin
+from fixture_design.analysis.restraint import Restraint, largest_residual, motion_in_world
+from fixture_design.arrays import Vector
+from fixture_design.contacts import Constraints, constraints_of, motion_scaled
+from fixture_design.layout import Answer, Finding, Motion
+
+#: Edges of the pyramids, coarse to fine.
+EDGES = (8, 16, 32, 64, 128, 256, 512)
+
+
+def force_closure(restraint: Restraint) -> Finding:
+    """Whether the contacts with their friction can balance every load: F = R^6  (2-22).
+
+    Returns:
+        yes with weights on friction edges (``edges`` of them a contact in space); no with a motion against which no
+        contact force does work; undecided with a reason. The margin is s of the inner pyramid with 8 edges.
+    """
+    if not any(contact.friction > 0 for contact in restraint.contacts):
+        settled = restraint.closed
+        return restraint.finding(Answer.of(settled.truth), settled, restraint.margin, full_rank=True)
+    planar = restraint.contacts[0].dimension == 3
+    margin = closure_margin(_pyramids(restraint, EDGES[0], reported=True), restraint.tolerances)
+    for edges in EDGES[:1] if planar else EDGES:
+        inner = _pyramids(restraint, edges)
+        settled = UnionQuestions(inner, restraint.tolerances).closed()
+        if settled.truth:
+            reported = _pyramids(restraint, edges, reported=True)
+            evidence = restraint.evidence(settled, inner, reported, full_rank=True)
+            stated = None if planar else edges
+            return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges=stated)
+        against = _unopposed(restraint, settled, inner)
+        if against is None and not planar:
+            outer = _pyramids(restraint, edges, side="outer")
+            against = _unopposed(restraint, UnionQuestions(outer, restraint.tolerances).closed(), outer)
+        if against is not None:
+            return Finding(Answer.NO, margin, against, against.residual)
+    if planar:
+        return Finding(Answer.UNDECIDED, margin, reason=settled.reason)
+    reason = f"the inner pyramids of {EDGES[-1]} edges do not close and the outer ones do: a tie with the friction cones"
+    return Finding(Answer.UNDECIDED, margin, edges=EDGES[-1], reason=settled.reason or reason)
+
+
+def _pyramids(restraint: Restraint, edges: int, side: str = "inner", *, reported: bool = False) -> Constraints:
+    scale = restraint.report if reported else None
+    return constraints_of(restraint.contacts, scale, with_friction=True, edges=edges, side=side)  # type: ignore[arg-type]
+
+
+def _unopposed(restraint: Restraint, settled: Settled, pyramids: Constraints) -> Motion | None:
+    """The motion of a search as evidence, if the friction cones themselves do not oppose it."""
+    if settled.motion is None:
+        return None
+    questions = UnionQuestions(restraint.constraints, restraint.tolerances)
+    if friction_value(restraint, restraint.constraints, settled.motion) > questions.tolerances.zero:
+        return None
+    motion = motion_in_world(settled.motion, pyramids.scale)
+    scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)
+    residual = friction_value(restraint, restraint.reported, scaled) / np.linalg.norm(scaled)
+    return Motion(motion, float(residual))
+
+
+def friction_value(restraint: Restraint, constraints: Constraints, motion: Vector) -> float:
+    """max over clauses of min over alternatives of  n . v + mu |v_t| + error, v the contact point's motion.
+
+    It is the largest work that unit-normal forces of the cone (the circular one, no pyramid) do against the motion:
+    where it is not positive, no friction force opposes the motion. ``motion`` is in the constraints' coordinates.
+    """
+    plane = len(constraints.scale.reference)
+    owner = constraints.contact[constraints.clause]  # without friction edges, one row an alternative
+    levers = np.array([c.point - constraints.scale.reference for c in restraint.contacts]) / constraints.scale.length
+    turning = motion[plane:]
+    if plane == 2:
+        spin = turning[0] * np.column_stack([-levers[:, 1], levers[:, 0]])
+    else:
+        spin = np.cross(turning, levers)
+    velocities = (motion[:plane] + spin)[owner]
+    normal_parts = np.einsum("rp,rp->r", constraints.rows[:, :plane], velocities)
+    tangential = velocities - normal_parts[:, None] * constraints.rows[:, :plane]
+    friction = np.array([c.friction for c in restraint.contacts])[owner]
+    sizes = np.hypot(1.0, friction)
+    products = normal_parts + friction * np.linalg.norm(tangential, axis=1) + constraints.errors * sizes
+    return float(constraints.clause_values(products).max())

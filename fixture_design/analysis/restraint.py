@@ -1,0 +1,132 @@
+"""A restraint: contacts that act together, with the arrays and answers that several questions share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fixture_design.analysis.branches import Leaf, Settled, UnionQuestions
+from fixture_design.analysis.margin import closure_margin
+from fixture_design.arrays import Rows, Vector
+from fixture_design.contacts import Constraints, Contact, Scale, constraints_of, motion_about_origin, motion_scaled, scale_of
+from fixture_design.layout import Evidence, Finding, Motion, Weights
+from fixture_design.layout.verdict import Answer
+from fixture_design.tolerances import DEFAULT, Tolerances
+
+
+@dataclass(frozen=True, eq=False)
+class Restraint:
+    """Some contacts, and the scale that margins and residuals are reported in.
+
+    Decisions use rows scaled by the contacts themselves (`constraints`), reports rows scaled by the part (`reported`).
+
+    Raises:
+        ContactError: no contacts.  DimensionError: planar and spatial ones mixed.
+    """
+
+    contacts: tuple[Contact, ...]
+    report: Scale
+    tolerances: Tolerances = DEFAULT
+
+    @classmethod
+    def of(cls, contacts: Sequence[Contact], report: Scale | None = None, tolerances: Tolerances = DEFAULT) -> Restraint:
+        """Without a report scale the contacts' own centroid and spread are taken."""
+        constraints_of(contacts)  # raises for what is no set of contacts
+        return cls(tuple(contacts), report or scale_of(contacts), tolerances)
+
+    @cached_property
+    def constraints(self) -> Constraints:
+        return constraints_of(self.contacts)
+
+    @cached_property
+    def reported(self) -> Constraints:
+        return constraints_of(self.contacts, self.report)
+
+    @cached_property
+    def closed(self) -> Settled:
+        """Is every branch {o}? Asked once for form closure and accessibility."""
+        return UnionQuestions(self.constraints, self.tolerances).closed()
+
+    @cached_property
+    def interior(self) -> Settled:
+        """Has some branch interior?"""
+        if self.closed.truth:
+            # a closed union has none, and its weights prove that too
+            return Settled(False, leaves=self.closed.leaves)
+        return UnionQuestions(self.constraints, self.tolerances).has_interior()
+
+    @cached_property
+    def margin(self) -> float | None:
+        """s of the normals, in the report's scale."""
+        return closure_margin(self.reported, self.tolerances)
+
+    def finding(self, answer: Answer, settled: Settled, margin: float | None, *, full_rank: bool) -> Finding:
+        """A finding about the normals, with its evidence; ``full_rank``: the weights need a basis for their claim."""
+        evidence = self.evidence(settled, self.constraints, self.reported, full_rank=full_rank)
+        return Finding(answer, margin, evidence, largest_residual(evidence), reason=settled.reason)
+
+    def evidence(
+        self, settled: Settled, constraints: Constraints, reported: Constraints, *, full_rank: bool
+    ) -> Evidence | None:
+        """What settled a question about ``constraints``, in names and in the report's scale."""
+        if settled.motion is not None:
+            motion = motion_in_world(settled.motion, constraints.scale)
+            scaled = motion_scaled(motion, self.report.reference, self.report.length)
+            value = reported.clause_values(reported.rows @ scaled).max() / np.linalg.norm(scaled)
+            return Motion(motion, float(value))
+        if settled.leaves:
+            return tuple(self._weights(leaf, reported, full_rank) for leaf in settled.leaves)
+        return None
+
+    def choice(self, alternatives: Sequence[int], constraints: Constraints) -> tuple[tuple[str, int, int], ...]:
+        """(contact, clause, alternative), counted from 0, where a clause had more than one alternative."""
+        chosen = []
+        for alternative in sorted(alternatives):
+            clause = int(constraints.clause[alternative])
+            siblings = constraints.alternatives_of(clause)
+            if len(siblings) > 1:
+                contact = int(constraints.contact[clause])
+                first = int(np.searchsorted(constraints.contact, contact))
+                chosen.append((self.contacts[contact].name, clause - first, int(alternative - siblings[0])))
+        return tuple(chosen)
+
+    def _weights(self, leaf: Leaf, reported: Constraints, full_rank: bool) -> Weights:
+        owner = reported.contact[reported.clause[reported.alternative]]
+        first = np.searchsorted(owner, np.arange(len(self.contacts)))
+        basis = heavy_basis(reported.rows, leaf.weights) if full_rank else []
+        return Weights(
+            weights={c.name: tuple(leaf.weights[owner == i].tolist()) for i, c in enumerate(self.contacts)},
+            basis=tuple((self.contacts[owner[row]].name, int(row - first[owner[row]])) for row in basis),
+            choice=self.choice(leaf.choice, reported),
+            residual=float(np.linalg.norm(leaf.weights @ reported.rows) / leaf.weights.sum()),
+        )
+
+
+def motion_in_world(motion: Vector, scale: Scale) -> Vector:
+    """A unit motion of scaled rows as [dx; dtheta] about W's origin; components that are only rounding become zero."""
+    tidy = np.where(np.abs(motion) < DEFAULT.zero * 1e-3, 0.0, motion)
+    return motion_about_origin(tidy, scale.reference, scale.length)
+
+
+def largest_residual(evidence: Evidence | None) -> float | None:
+    """The residual of a finding: the worst of its evidence."""
+    if evidence is None:
+        return None
+    return max(w.residual for w in evidence) if isinstance(evidence, tuple) else evidence.residual
+
+
+def heavy_basis(rows: Rows, weights: np.ndarray) -> list[int]:
+    """d independent rows of large weight: again and again the row whose weighted part off the span so far is longest."""
+    remaining = weights[:, None] * rows
+    chosen: list[int] = []
+    for _ in range(rows.shape[1]):
+        lengths = np.linalg.norm(remaining, axis=1)
+        best = int(np.argmax(lengths))
+        chosen.append(best)
+        direction = remaining[best] / lengths[best]
+        remaining = remaining - np.outer(remaining @ direction, direction)
+        remaining[chosen] = 0.0
+    return sorted(chosen)

@@ -1,0 +1,69 @@
+"""`fixture-design`: the options of the program itself, its subcommands, and what happens to exceptions."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from importlib.metadata import PackageNotFoundError, version
+from typing import Annotated
+
+import typer
+
+from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.schema import schema
+from fixture_design.cli.verify import verify
+from fixture_design.cones.kernel import NAME as KERNEL
+from fixture_design.errors import InputError
+from fixture_design.version import VERSION
+
+app = typer.Typer(
+    name="fixture-design",
+    help="Does this fixture locate the part, let it in and out, and hold it? A verdict with proof.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command()(verify)
+app.command()(schema)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        try:
+            drake = version("drake")
+        except PackageNotFoundError:
+            drake = "not installed"
+        typer.echo(f"fixture-design {VERSION}, Drake {drake}, kernel {KERNEL}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Versions and kernel in use.")
+    ] = False,
+) -> None:
+    """Options of the program itself."""
+
+
+def main() -> None:
+    """Run the command line; every exception becomes one message and an exit code."""
+    try:
+        code = app(standalone_mode=False)
+    except InputError as error:
+        typer.echo(f"fixture-design: {error}", err=True)
+        code = ExitCode.BAD_INPUT
+    except (KeyboardInterrupt, typer.Abort):
+        typer.echo("fixture-design: interrupted", err=True)
+        code = ExitCode.INTERRUPTED
+    except typer.Exit as leaving:
+        code = leaving.exit_code
+    except Exception as error:  # noqa: BLE001 - the last resort: say that it is our fault, with all there is to know
+        if hasattr(error, "exit_code") and hasattr(error, "show"):  # click's own usage errors
+            error.show()
+            code = error.exit_code
+        else:
+            traceback.print_exc()
+            typer.echo(f"fixture-design: internal error ({type(error).__name__}); this is a fault of ours", err=True)
+            code = ExitCode.INTERNAL_ERROR
+    sys.exit(int(code or 0))

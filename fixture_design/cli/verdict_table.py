@@ -1,0 +1,59 @@
+"""The verdict as a table (rich): for each group one row a question, then requirements and notes."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from fixture_design.cli.words import evidence_in_words
+from fixture_design.layout import Answer, GroupVerdict, Verdict
+
+_STYLE = {Answer.YES: "green", Answer.NO: "red", Answer.UNDECIDED: "yellow", None: "dim"}
+_SATISFIED = {
+    Answer.YES: "all requirements hold",
+    Answer.NO: "requirements fail",
+    Answer.UNDECIDED: "requirements undecided",
+}
+#: Columns of a report that does not go to a terminal.
+_PAPER_WIDTH = 120
+
+
+def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
+    """Print one verdict; a group that has another one's contacts refers to it instead of repeating it."""
+    console = console or _console()
+    console.print(f"[bold]{escape(verdict.name)}[/]: {verdict.space}, {len(verdict.contacts)} contacts", highlight=False)
+    table = Table()
+    for heading in ("question", "answer", "margin", "evidence"):
+        table.add_column(heading, justify="right" if heading == "margin" else "left", no_wrap=heading != "evidence")
+    printed: dict[tuple[str, ...], str] = {}
+    for group in verdict.groups.values():
+        same = printed.setdefault(group.contacts, group.name)
+        _add_group(table, group, None if same == group.name else same, verdict.length)
+    console.print(table)
+    for requirement in verdict.requirements:
+        said = "no contacts" if requirement.answer is None else str(requirement.answer)
+        name = escape(f"{requirement.group}: {requirement.require.replace('_', ' ')}")
+        console.print(f"required of {name}: [{_STYLE[requirement.answer]}]{said}[/]", highlight=False)
+    for note in verdict.notes:
+        console.print(f"note: {note}", markup=False, highlight=False)
+    if verdict.satisfied is not None:
+        console.print(f"[{_STYLE[verdict.satisfied]}]{_SATISFIED[verdict.satisfied]}[/]")
+
+
+def _console() -> Console:
+    console = Console()
+    return console if console.is_terminal else Console(width=_PAPER_WIDTH)
+
+
+def _add_group(table: Table, group: GroupVerdict, same: str | None, length: float) -> None:
+    names = ", ".join(group.contacts) or "no contacts"
+    said = f"as {same}" if same else names
+    table.add_row(f"[bold]{escape(group.name)}[/]", "", "", f"[dim]{escape(said)}[/]")
+    if same is None and group.contacts:
+        for claim, finding in group.findings.items():
+            margin = "" if finding.margin is None else f"{finding.margin + 0.0:.3g}"
+            answer = f"[{_STYLE[finding.answer]}]{finding.answer}[/]"
+            evidence = escape(evidence_in_words(claim, finding, length))
+            table.add_row(f"  {claim.replace('_', ' ')}", answer, margin, evidence)
+    table.add_section()

@@ -1,0 +1,45 @@
+"""`fixture-design verify LAYOUT...`: contacts, verdicts and their evidence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from fixture_design.cli.exit_codes import ExitCode, of_answer, worst
+from fixture_design.errors import InputError
+from fixture_design.io import dumps, failure_to_dict, read_layout, verdict_to_dict
+
+
+def verify(
+    layouts: Annotated[list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT...")],
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout: an object, or an array.")] = False,
+) -> None:
+    """Say whether layouts locate the part, let it out and hold it, with evidence.
+
+    Exit code: 0 requirements hold or none given, 1 some do not, 3 undecided, 2 bad input.
+    """
+    from fixture_design.verification import verify as verify_layout  # noqa: PLC0415 - after the arguments are known good
+
+    codes: list[ExitCode] = []
+    records: list[dict[str, Any]] = []
+    for path in layouts:
+        try:
+            verdict = verify_layout(read_layout(path))
+        except InputError as error:
+            error.within(path)
+            typer.echo(f"fixture-design: {error}", err=True)
+            codes.append(ExitCode.BAD_INPUT)
+            records.append(failure_to_dict(path.stem, str(path), error))
+            continue
+        codes.append(of_answer(verdict.satisfied))
+        if as_json:
+            records.append(verdict_to_dict(verdict))
+        else:
+            from fixture_design.cli.verdict_table import print_verdict  # noqa: PLC0415 - rich is not needed for JSON
+
+            print_verdict(verdict)
+    if as_json:
+        typer.echo(dumps(records[0] if len(layouts) == 1 else records))
+    raise typer.Exit(worst(codes))

@@ -1,0 +1,190 @@
+"""The one pipeline: layout -> contacts -> groups -> verdicts.
+
+Geometry is asked only for layouts that have elements or bodies; a layout of contacts alone loads neither Drake nor
+trimesh nor scipy.optimize.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fixture_design.analysis import (
+    Restraint,
+    accessible,
+    admissible_displacements,
+    admissible_forces,
+    bidirectional_contacts,
+    deterministic,
+    displacements_in_world,
+    force_closure,
+    forces_in_world,
+    form_closure,
+    strongly_accessible,
+)
+from fixture_design.cones.kernel import NAME as KERNEL
+from fixture_design.contacts import Contact, Scale, scale_of
+from fixture_design.errors import ConeError, ContactError
+from fixture_design.layout import (
+    Answer,
+    Finding,
+    Group,
+    GroupVerdict,
+    Layout,
+    RequirementVerdict,
+    Verdict,
+    groups_of,
+)
+from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.version import VERSION
+
+#: The questions this version answers about every group, in the order they are reported.
+QUESTIONS = {
+    "deterministic": deterministic,
+    "accessible": accessible,
+    "strongly_accessible": strongly_accessible,
+    "form_closure": form_closure,
+    "force_closure": force_closure,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class FoundContacts:
+    """All contacts of a layout, the scale its margins are measured in, and what there is to say about them."""
+
+    contacts: tuple[Contact, ...]
+    report: Scale
+    notes: tuple[str, ...]
+
+
+def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
+    """Contacts, findings and requirements of a layout.
+
+    Raises:
+        InputError: the layout has no contacts at all, its geometry cannot be used, or an element is off the surface.
+    """
+    found = contacts_of(layout)
+    notes = list(found.notes) + coincident_notes(found.contacts, found.report)
+    groups = groups_of(layout, found.contacts)
+    verdicts = group_verdicts(groups, found.report, notes, tolerances)
+    requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
+    return Verdict(
+        name=layout.name,
+        source=None if layout.source is None else str(layout.source),
+        space=layout.space,
+        satisfied=_satisfied(requirements),
+        groups=verdicts,
+        contacts=found.contacts,
+        requirements=requirements,
+        notes=tuple(notes),
+        reference=found.report.reference,
+        length=found.report.length,
+        run={"version": VERSION, "kernel": KERNEL, "tolerances": tolerances.as_dict()},
+    )
+
+
+def contacts_of(layout: Layout) -> FoundContacts:
+    """Every contact of a layout: those of its elements in file order, of its bodies, then those given outright.
+
+    Raises:
+        ContactError: there are none.  GeometryError and others: from the geometry.
+    """
+    if not (layout.elements or layout.bodies):
+        if not layout.contacts:
+            problem = "the layout has no contacts: give `elements`, `bodies` or `contacts`"
+            raise ContactError(problem, source=layout.source)
+        return FoundContacts(layout.contacts, scale_of(layout.contacts), ())
+    from fixture_design.geometry import contacts_of_elements  # noqa: PLC0415 - Drake only where there is geometry
+
+    found = contacts_of_elements(layout)
+    contacts = (*found.contacts, *layout.contacts)
+    return FoundContacts(contacts, Scale(found.box_center, found.half_diagonal), found.notes)
+
+
+def group_verdicts(
+    groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances
+) -> dict[str, GroupVerdict]:
+    """The verdict of every group; groups with the same contacts are looked at once."""
+    verdicts: dict[str, GroupVerdict] = {}
+    known: dict[tuple[str, ...], GroupVerdict] = {}
+    for group in groups:
+        names = tuple(contact.name for contact in group.contacts)
+        if names not in known:
+            known[names] = group_verdict(group, report, notes, tolerances)
+        verdicts[group.name] = replace(known[names], name=group.name)
+    return verdicts
+
+
+def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tolerances) -> GroupVerdict:
+    """Every question asked of one group; all answers are None for an empty one."""
+    names = tuple(contact.name for contact in group.contacts)
+    if not group.contacts:
+        return GroupVerdict(group.name, names, {question: Finding(None) for question in QUESTIONS})
+    restraint = Restraint.of(group.contacts, report, tolerances)
+    findings = {name: question(restraint) for name, question in QUESTIONS.items()}
+    notes += [f"{group.name}: {name} is undecided: {f.reason}" for name, f in findings.items() if f.reason]
+    displacements = forces = None
+    try:
+        displacements = admissible_displacements(restraint)
+        if displacements is not None:
+            forces = admissible_forces(displacements)
+    except ConeError as error:
+        notes.append(f"{group.name}: the admissible sets are not listed: {error}")
+        displacements = None
+    if displacements is None or forces is None:
+        return GroupVerdict(group.name, names, findings, bidirectional=bidirectional_contacts(restraint))
+    scale = restraint.constraints.scale
+    return GroupVerdict(
+        group.name,
+        names,
+        findings,
+        tuple(displacements_in_world(cone, scale) for cone in displacements),
+        forces_in_world(forces, scale),
+        bidirectional_contacts(restraint),
+    )
+
+
+def coincident_notes(contacts: Sequence[Contact], report: Scale) -> list[str]:
+    """A note for every two contacts in one point with the same normals: counted twice, they add nothing."""
+    notes = []
+    for index, first in enumerate(contacts):
+        for second in contacts[index + 1 :]:
+            near = np.linalg.norm(first.point - second.point) <= DEFAULT.tie * report.length
+            if near and _same_normals(first, second):
+                notes.append(f"contacts {first.name!r} and {second.name!r} coincide")
+    return notes
+
+
+def _same_normals(first: Contact, second: Contact) -> bool:
+    if [len(clause) for clause in first.clauses] != [len(clause) for clause in second.clauses]:
+        return False
+    pairs = zip(first.normals, second.normals, strict=True)
+    return all(np.allclose(a / np.linalg.norm(a), b / np.linalg.norm(b), rtol=0, atol=DEFAULT.tie) for a, b in pairs)
+
+
+def _requirement_verdicts(
+    groups: Sequence[Group], verdicts: dict[str, GroupVerdict], notes: list[str]
+) -> list[RequirementVerdict]:
+    found = []
+    for group in groups:
+        for require in group.require:
+            if not group.contacts:
+                notes.append(f"{group.name}: {require} is required of a group without contacts, which satisfies nothing")
+                found.append(RequirementVerdict(group.name, require, None))
+            elif require in QUESTIONS:
+                found.append(RequirementVerdict(group.name, require, verdicts[group.name].findings[require].answer))
+            else:
+                notes.append(f"{group.name}: {require} is not evaluated by version {VERSION}: undecided")
+                found.append(RequirementVerdict(group.name, require, Answer.UNDECIDED))
+    return found
+
+
+def _satisfied(requirements: Sequence[RequirementVerdict]) -> Answer | None:
+    answers = [requirement.answer for requirement in requirements]
+    if not answers:
+        return None
+    if any(answer in (Answer.NO, None) for answer in answers):
+        return Answer.NO
+    return Answer.UNDECIDED if Answer.UNDECIDED in answers else Answer.YES
