@@ -13,9 +13,9 @@ The folders state the theory, and each imports only from those to its right::
 
     cli > io > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
 
-* `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel` has
-  the three decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and
-  the point of a hull nearest to the origin. `cones.thesis` is CONVERT as the thesis has it, for comparison.
+* `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
+  has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
+  point of a hull nearest to the origin. `cones.thesis` is CONVERT as the thesis has it, for comparison.
 * `contacts`: a contact is a point and an AND of ORs of normals; face vectors, friction cones; `Constraints` are the
   same as flat arrays.
 * `layout`: the nouns: part, element, layout, group, verdict.
@@ -28,11 +28,11 @@ The folders state the theory, and each imports only from those to its right::
 How an answer is decided
 ========================
 
-For rows d_i scaled to unit length, s = min over |u| = 1 of max_i d_i . u is positive if and only if they close, negative
-if and only if some motion leaves them all, and zero in the degenerate cases that real fixtures are full of. s moves no
-more than the rows do. Weights that balance bound it from below, a motion bounds it from above; an answer is given where
-a bound clears the band around zero (`tolerances`), and is *undecided* otherwise, with the reason. Exact arithmetic on
-rounded coordinates would answer another question, so ties are ties within the tolerance.
+For rows d_i scaled to unit length, s = min over |u| = 1 of max_i d_i . u is positive if and only if they close,
+negative if and only if some motion leaves them all, and zero in the degenerate cases that real fixtures are full of.
+s moves no more than the rows do. Weights that balance bound it from below, a motion bounds it from above; an answer is
+given where a bound clears the band around zero (`tolerances`), and is *undecided* otherwise, with the reason. Exact
+arithmetic on rounded coordinates would answer another question, so ties are ties within the tolerance.
 
 Conventions
 ===========

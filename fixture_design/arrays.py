@@ -1,9 +1,14 @@
 """Shape aliases: what an array holds, in its type. d is 3 in the plane (x, y, theta) and 6 in space.
 
 The annotations are checked at run time while testing (jaxtyping with beartype) and are only documentation otherwise.
+Dimensions (d, p) are one number within a signature; counts are not, since most functions take rows of several kinds:
+where two counts must agree, the signature says so with a name of its own.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -11,22 +16,25 @@ from jaxtyping import Bool, Float, Int
 #: One vector of the wrench or twist space, or of any other R^d.
 Vector = Float[np.ndarray, "d"]
 #: Vectors as rows.
-Rows = Float[np.ndarray, "m d"]
+Rows = Float[np.ndarray, "_ d"]
 #: One weight per row.
-Weights = Float[np.ndarray, "m"]
+Weights = Float[np.ndarray, "_"]
 #: A selection of rows.
-Mask = Bool[np.ndarray, "m"]
+Mask = Bool[np.ndarray, "_"]
 #: Which rows (columns) each ray (row) makes active.
-Incidence = Bool[np.ndarray, "k m"]
+Incidence = Bool[np.ndarray, "_ _"]
 #: Indices.
-Indices = Int[np.ndarray, "n"]
+Indices = Int[np.ndarray, "_"]
 #: A point, direction or normal: [x, y] in the plane, [x, y, z] in space.
 Point = Float[np.ndarray, "p"]
 #: Points as rows.
-Points = Float[np.ndarray, "n p"]
+Points = Float[np.ndarray, "_ p"]
+
+#: What the public functions take where they want numbers: an array, or lists of them.
+ArrayLike = np.ndarray | Sequence[Any]
 
 
-def read_only(values: object) -> np.ndarray:
+def read_only(values: ArrayLike) -> np.ndarray:
     """A float64 copy that nobody can write to, so that frozen dataclasses are frozen."""
     array = np.array(values, dtype=np.float64)
     array.flags.writeable = False

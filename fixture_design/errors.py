@@ -58,12 +58,21 @@ class FileFormatError(InputError):
 class UnknownNameError(InputError):
     """A name that should refer to something does not; the message lists the names there are."""
 
-    def __init__(self, kind: str, name: str, known: Iterable[str], **where: str | Path | None) -> None:
+    def __init__(
+        self,
+        kind: str,
+        name: str,
+        known: Iterable[str],
+        *,
+        source: str | Path | None = None,
+        place: str | None = None,
+    ) -> None:
         names = sorted(known)
         close = get_close_matches(name, names, n=1)
         hint = f"did you mean {close[0]!r}? " if close else ""
         self.name, self.known = name, names
-        super().__init__(f"no {kind} is called {name!r}; {hint}there are: {', '.join(names) or 'none'}", **where)
+        problem = f"no {kind} is called {name!r}; {hint}there are: {', '.join(names) or 'none'}"
+        super().__init__(problem, source=source, place=place)
 
 
 class DimensionError(InputError):

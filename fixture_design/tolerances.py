@@ -33,7 +33,8 @@ SURFACE_GAP = 1e-5
 #: facets a thousand times wider than their vertices' rounding, well below any draft angle.
 COPLANAR_ANGLE = 1e-4
 
-#: Angle below which neighbouring facets may approximate one smooth surface [rad]: coarse exports have 10 degrees a strip.
+#: Angle below which neighbouring facets may approximate one smooth surface [rad]: coarse meshes turn 10 degrees and
+#: more from strip to strip.
 SMOOTH_ANGLE = float(np.radians(35.0))
 
 #: Vertices closer than this are one vertex, relative to the size of the part [-].
@@ -77,3 +78,23 @@ class Tolerances:
 
 
 DEFAULT = Tolerances()
+
+#: Coordinates of a text file with at least this many significant digits were rounded by an exporter; shorter ones are
+#: dimensions as a designer typed them, and exact [-].
+ROUNDED_DIGITS = 5
+
+#: A facet is a strip of a curved surface only if it is at most this many times as wide as a smooth neighbour [-]: flats
+#: next to fillets are wider, strips of one surface differ by less than 2 except at its ends.
+STRIP_WIDTH_RATIO = 3.0
+
+#: A point this many vertex roundings from an edge is on it [-]: the edge itself is not known better.
+ON_EDGE_ROUNDINGS = 4.0
+
+#: Coordinates of mesh vertices below this, relative to the size of the part, are exporter noise around 0 [-].
+ZERO_COORDINATE = 1e-13
+
+#: A facet whose normal is less certain than this is a sliver: it says nothing about its neighbours or a corner [rad].
+SLIVER_NOISE = 1e-2
+
+#: A ball's centre further from the surface than this, relative to the size of the part, has a direction from it [-].
+OFF_SURFACE = 1e-9

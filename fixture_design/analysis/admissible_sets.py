@@ -41,7 +41,7 @@ def admissible_displacements(restraint: Restraint) -> ConeUnion | None:
 
 
 def admissible_forces(displacements: ConeUnion) -> PolyhedralConvexCone:
-    """F, the polar of the union (Table 3), with both forms irreducible: loads that frictionless contacts can balance."""
+    """F, the polar of the union (Table 3), both forms irreducible: loads that frictionless contacts can balance."""
     return convert_both(union_dual(displacements))
 
 

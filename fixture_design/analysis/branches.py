@@ -88,9 +88,7 @@ class UnionQuestions:
         """max over clauses of min over alternatives of max over rows of d . u + error, for a unit motion."""
         return float(self._clause_values(motion).max(initial=-np.inf))
 
-    def _search(
-        self, proves: Callable[[Bounds], bool], admits: Callable[[float], bool], found: bool
-    ) -> Settled:
+    def _search(self, proves: Callable[[Bounds], bool], admits: Callable[[float], bool], found: bool) -> Settled:
         self._nodes = 0
         leaves: list[Leaf] = []
         reasons: list[str] = []

@@ -18,7 +18,7 @@ from fixture_design.analysis.branches import Settled, UnionQuestions
 from fixture_design.analysis.margin import closure_margin
 from fixture_design.analysis.restraint import Restraint, largest_residual, motion_in_world
 from fixture_design.arrays import Vector
-from fixture_design.contacts import Constraints, constraints_of, motion_scaled
+from fixture_design.contacts import Constraints, Side, constraints_of, motion_scaled
 from fixture_design.layout import Answer, Finding, Motion
 
 #: Edges of the pyramids, coarse to fine.
@@ -35,31 +35,48 @@ def force_closure(restraint: Restraint) -> Finding:
     if not any(contact.friction > 0 for contact in restraint.contacts):
         settled = restraint.closed
         return restraint.finding(Answer.of(settled.truth), settled, restraint.margin, full_rank=True)
-    planar = restraint.contacts[0].dimension == 3
     margin = closure_margin(_pyramids(restraint, EDGES[0], reported=True), restraint.tolerances)
-    for edges in EDGES[:1] if planar else EDGES:
-        inner = _pyramids(restraint, edges)
+    planar = restraint.contacts[0].dimension == 3
+    return _in_the_plane(restraint, margin) if planar else _in_space(restraint, margin)
+
+
+def _in_the_plane(restraint: Restraint, margin: float | None) -> Finding:
+    """Planar friction cones have two edges: one question, exact."""
+    cones = _pyramids(restraint, EDGES[0])
+    settled = UnionQuestions(cones, restraint.tolerances).closed()
+    if settled.truth:
+        return _holds(restraint, settled, margin, EDGES[0], stated=None)
+    against = _unopposed(restraint, settled, cones)
+    if against is None:
+        return Finding(Answer.UNDECIDED, margin, reason=settled.reason)
+    return Finding(Answer.NO, margin, against, against.residual)
+
+
+def _in_space(restraint: Restraint, margin: float | None) -> Finding:
+    """Inner and outer pyramids with more and more edges, until they agree."""
+    for edges in EDGES:
+        inner, outer = _pyramids(restraint, edges, "inner"), _pyramids(restraint, edges, "outer")
         settled = UnionQuestions(inner, restraint.tolerances).closed()
         if settled.truth:
-            reported = _pyramids(restraint, edges, reported=True)
-            evidence = restraint.evidence(settled, inner, reported, full_rank=True)
-            stated = None if planar else edges
-            return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges=stated)
+            return _holds(restraint, settled, margin, edges, stated=edges)
         against = _unopposed(restraint, settled, inner)
-        if against is None and not planar:
-            outer = _pyramids(restraint, edges, side="outer")
+        if against is None:
             against = _unopposed(restraint, UnionQuestions(outer, restraint.tolerances).closed(), outer)
         if against is not None:
             return Finding(Answer.NO, margin, against, against.residual)
-    if planar:
-        return Finding(Answer.UNDECIDED, margin, reason=settled.reason)
-    reason = f"the inner pyramids of {EDGES[-1]} edges do not close and the outer ones do: a tie with the friction cones"
-    return Finding(Answer.UNDECIDED, margin, edges=EDGES[-1], reason=settled.reason or reason)
+    reason = f"inner pyramids of {EDGES[-1]} edges do not close, outer ones do: a tie with the friction cones"
+    return Finding(Answer.UNDECIDED, margin, edges=EDGES[-1], reason=reason)
 
 
-def _pyramids(restraint: Restraint, edges: int, side: str = "inner", *, reported: bool = False) -> Constraints:
+def _holds(restraint: Restraint, settled: Settled, margin: float | None, edges: int, *, stated: int | None) -> Finding:
+    inner, reported = _pyramids(restraint, edges), _pyramids(restraint, edges, reported=True)
+    evidence = restraint.evidence(settled, inner, reported, full_rank=True)
+    return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges=stated)
+
+
+def _pyramids(restraint: Restraint, edges: int, side: Side = "inner", *, reported: bool = False) -> Constraints:
     scale = restraint.report if reported else None
-    return constraints_of(restraint.contacts, scale, with_friction=True, edges=edges, side=side)  # type: ignore[arg-type]
+    return constraints_of(restraint.contacts, scale, with_friction=True, edges=edges, side=side)
 
 
 def _unopposed(restraint: Restraint, settled: Settled, pyramids: Constraints) -> Motion | None:

@@ -1,7 +1,8 @@
 """The facet of a convex hull that is nearest to the origin: how far closed rows are from opening.
 
-For rows whose hull has the origin inside, s = min over |u| = 1 of max_i d_i . u is the smallest distance of a facet, and
-that facet's normal attains it. The facets are the extreme rays (u, t) of {(u, t) : d_i . u <= t}, at distance t / |u|.
+For rows whose hull has the origin inside, s = min over |u| = 1 of max_i d_i . u is the smallest distance of a facet,
+and that facet's normal attains it. The facets are the extreme rays (u, t) of {(u, t) : d_i . u <= t}, at distance
+t / |u|.
 """
 
 from __future__ import annotations

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fixture_design.analysis.admissible_sets import admissible_forces
-from fixture_design.arrays import Rows, Vector
+from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone, convert, dual
 from fixture_design.cones.kernel import nonnegative_least_squares
 from fixture_design.errors import DimensionError
@@ -31,7 +30,7 @@ PairKind = Literal["reciprocal", "repelling", "contrary"]
 class HybridControl:
     """The sets a hybrid controller works with.
 
-    Displacements and forces are in one set of coordinates, [dx; dtheta] and [f; m] about one origin; lengths are weighed
+    Displacements and forces are in one set of coordinates, [dx; dtheta] and [f; m] about one origin; lengths weigh
     against angles as these coordinates do, which matters where a command is *nearest* to a wish, and nowhere else.
 
     Attributes:

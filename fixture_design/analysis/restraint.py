@@ -11,7 +11,15 @@ import numpy as np
 from fixture_design.analysis.branches import Leaf, Settled, UnionQuestions
 from fixture_design.analysis.margin import closure_margin
 from fixture_design.arrays import Rows, Vector
-from fixture_design.contacts import Constraints, Contact, Scale, constraints_of, motion_about_origin, motion_scaled, scale_of
+from fixture_design.contacts import (
+    Constraints,
+    Contact,
+    Scale,
+    constraints_of,
+    motion_about_origin,
+    motion_scaled,
+    scale_of,
+)
 from fixture_design.layout import Evidence, Finding, Motion, Weights
 from fixture_design.layout.verdict import Answer
 from fixture_design.tolerances import DEFAULT, Tolerances
@@ -32,7 +40,9 @@ class Restraint:
     tolerances: Tolerances = DEFAULT
 
     @classmethod
-    def of(cls, contacts: Sequence[Contact], report: Scale | None = None, tolerances: Tolerances = DEFAULT) -> Restraint:
+    def of(
+        cls, contacts: Sequence[Contact], report: Scale | None = None, tolerances: Tolerances = DEFAULT
+    ) -> Restraint:
         """Without a report scale the contacts' own centroid and spread are taken."""
         constraints_of(contacts)  # raises for what is no set of contacts
         return cls(tuple(contacts), report or scale_of(contacts), tolerances)
@@ -119,7 +129,7 @@ def largest_residual(evidence: Evidence | None) -> float | None:
 
 
 def heavy_basis(rows: Rows, weights: np.ndarray) -> list[int]:
-    """d independent rows of large weight: again and again the row whose weighted part off the span so far is longest."""
+    """d independent rows of large weight: again and again the one whose weighted part off the span is longest."""
     remaining = weights[:, None] * rows
     chosen: list[int] = []
     for _ in range(rows.shape[1]):

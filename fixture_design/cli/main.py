@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated
 
 import typer
+from typer.exceptions import TyperException
 
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.schema import schema
@@ -58,12 +59,11 @@ def main() -> None:
         code = ExitCode.INTERRUPTED
     except typer.Exit as leaving:
         code = leaving.exit_code
+    except TyperException as error:
+        typer.echo(f"fixture-design: {error.format_message()}; see fixture-design --help", err=True)
+        code = ExitCode.BAD_INPUT
     except Exception as error:  # noqa: BLE001 - the last resort: say that it is our fault, with all there is to know
-        if hasattr(error, "exit_code") and hasattr(error, "show"):  # click's own usage errors
-            error.show()
-            code = error.exit_code
-        else:
-            traceback.print_exc()
-            typer.echo(f"fixture-design: internal error ({type(error).__name__}); this is a fault of ours", err=True)
-            code = ExitCode.INTERNAL_ERROR
+        traceback.print_exc()
+        typer.echo(f"fixture-design: internal error ({type(error).__name__}); this is a fault of ours", err=True)
+        code = ExitCode.INTERNAL_ERROR
     sys.exit(int(code or 0))

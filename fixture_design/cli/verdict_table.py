@@ -22,7 +22,9 @@ _PAPER_WIDTH = 120
 def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
     """Print one verdict; a group that has another one's contacts refers to it instead of repeating it."""
     console = console or _console()
-    console.print(f"[bold]{escape(verdict.name)}[/]: {verdict.space}, {len(verdict.contacts)} contacts", highlight=False)
+    console.print(
+        f"[bold]{escape(verdict.name)}[/]: {verdict.space}, {len(verdict.contacts)} contacts", highlight=False
+    )
     table = Table()
     for heading in ("question", "answer", "margin", "evidence"):
         table.add_column(heading, justify="right" if heading == "margin" else "left", no_wrap=heading != "evidence")

@@ -9,12 +9,12 @@ import typer
 
 from fixture_design.cli.exit_codes import ExitCode, of_answer, worst
 from fixture_design.errors import InputError
-from fixture_design.io import dumps, failure_to_dict, read_layout, verdict_to_dict
+from fixture_design.io import dumps, error_record, read_layout, verdict_to_dict
 
 
 def verify(
     layouts: Annotated[list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT...")],
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout: an object, or an array.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout (several: an array).")] = False,
 ) -> None:
     """Say whether layouts locate the part, let it out and hold it, with evidence.
 
@@ -31,7 +31,7 @@ def verify(
             error.within(path)
             typer.echo(f"fixture-design: {error}", err=True)
             codes.append(ExitCode.BAD_INPUT)
-            records.append(failure_to_dict(path.stem, str(path), error))
+            records.append(error_record(path, error))
             continue
         codes.append(of_answer(verdict.satisfied))
         if as_json:

@@ -37,7 +37,8 @@ def weights_in_words(claim: str, branches: tuple[Weights, ...]) -> str:
     in_branches = f" (in each of {len(branches)} branches)" if len(branches) > 1 else ""
     if claim == "strongly_accessible":
         return f"{', '.join(names)} constrain both ways{in_branches}"
-    return f"{', '.join(names)} balance with full rank{in_branches}"
+    lead = "can hold any load: " if claim == "force_closure" else ""
+    return f"{lead}{', '.join(names)} balance with full rank{in_branches}"
 
 
 def motion_in_words(motion: Vector, length: float) -> str:

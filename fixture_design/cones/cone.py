@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Mask, Rows, Vector, read_only
+from fixture_design.arrays import ArrayLike, Mask, Rows, Vector, read_only
 from fixture_design.errors import ConeError, DimensionError
 from fixture_design.tolerances import ZERO_ROW
 
@@ -53,7 +53,7 @@ class PolyhedralConvexCone:
 
     @classmethod
     def from_faces(
-        cls, faces: object, equalities: object = (), *, dimension: int | None = None
+        cls, faces: ArrayLike, equalities: ArrayLike = (), *, dimension: int | None = None
     ) -> PolyhedralConvexCone:
         """A = {x : a . x <= 0 for the faces, e . x = 0 for the equalities}  (2-24).
 
@@ -71,7 +71,7 @@ class PolyhedralConvexCone:
 
     @classmethod
     def from_span(
-        cls, spans: object, lines: object = (), *, dimension: int | None = None
+        cls, spans: ArrayLike, lines: ArrayLike = (), *, dimension: int | None = None
     ) -> PolyhedralConvexCone:
         """A = {sum c_j u_j + sum b_i l_i : c_j >= 0, any b_i}  (2-26). Arguments and errors as in `from_faces`."""
         d = _common_dimension(dimension, spans, lines)
@@ -155,7 +155,7 @@ def require_same_dimension(*cones: PolyhedralConvexCone) -> int:
     return dimensions.pop()
 
 
-def _common_dimension(dimension: int | None, *groups: object) -> int:
+def _common_dimension(dimension: int | None, *groups: ArrayLike) -> int:
     found = {dimension} if dimension is not None else set()
     for group in groups:
         try:
@@ -173,7 +173,7 @@ def _common_dimension(dimension: int | None, *groups: object) -> int:
     return found.pop()
 
 
-def _vectors(values: object, dimension: int) -> Rows:
+def _vectors(values: ArrayLike, dimension: int) -> Rows:
     array = read_only(values).reshape(-1, dimension)
     if not np.isfinite(array).all():
         bad = int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])

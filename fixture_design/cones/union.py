@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-
 from fixture_design.cones.cone import PolyhedralConvexCone, require_same_dimension
 from fixture_design.cones.convert import convert
 from fixture_design.cones.membership import element, interior, nonzero, subset

@@ -2,7 +2,7 @@
 
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
 from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role
-from fixture_design.contacts.friction import friction_edges
+from fixture_design.contacts.friction import Side, friction_edges
 from fixture_design.contacts.wrench import face_vectors, motion_about_origin, motion_scaled, velocity
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Provenance",
     "Role",
     "Scale",
+    "Side",
     "constraints_of",
     "face_vectors",
     "friction_edges",

@@ -2,7 +2,7 @@
 
 A row is a face vector [n; (x - reference) X n / length] with |n| = 1: dimensionless, and the same however the layout is
 placed or what its unit is. Rows belong to alternatives (a normal has one row; with friction, one for each edge of its
-cone), alternatives to clauses (the OR), clauses to contacts (the AND). A *branch* picks one alternative in every clause:
+cone), alternatives to clauses (the OR), clauses to contacts (the AND). A *branch* picks one alternative a clause;
 A = A_1 u ... u A_N has one cone a branch (2-9). The arrays are flat, so that many layouts go into one batch.
 """
 

@@ -12,20 +12,21 @@ Normals are kept as they come, not normalised: (1, -1) is exact, (0.7071, -0.707
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Point, read_only
+from fixture_design.arrays import ArrayLike, Point, read_only
 from fixture_design.errors import ContactError, DimensionError
 
 #: What an element or contact is for. Supports come up after clamping and locate nothing.
 Role = Literal["locator", "support", "clamp", "finger"]
 ROLES: tuple[Role, ...] = ("locator", "support", "clamp", "finger")
 
-#: One clause: the normals of which at least one must not be entered.
-Clause = tuple[Point, ...]
+#: One clause: the normals of which at least one must not be entered. `Contact` itself checks their shape.
+Clause = tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class Contact:
 
     name: str
     role: Role
-    point: Point
+    point: np.ndarray
     clauses: tuple[Clause, ...]
     friction: float = 0.0
     provenance: Provenance = field(default_factory=Provenance)
@@ -95,9 +96,22 @@ class Contact:
             raise ContactError(f"contact {self.name!r}: friction must be a number >= 0, not {self.friction}")
 
     @classmethod
-    def on_facet(cls, name: str, role: Role, point: object, normal: object, friction: float = 0.0) -> Contact:
+    def of(
+        cls,
+        name: str,
+        role: Role,
+        point: ArrayLike,
+        clauses: Sequence[Sequence[ArrayLike]],
+        friction: float = 0.0,
+    ) -> Contact:
+        """A contact from lists: an AND of ORs of normals."""
+        normals = tuple(tuple(read_only(normal) for normal in clause) for clause in clauses)
+        return cls(name, role, read_only(point), normals, friction)
+
+    @classmethod
+    def on_facet(cls, name: str, role: Role, point: ArrayLike, normal: ArrayLike, friction: float = 0.0) -> Contact:
         """A contact with a single normal."""
-        return cls(name, role, read_only(point), ((read_only(normal),),), friction)
+        return cls.of(name, role, point, [[normal]], friction)
 
     @property
     def normals(self) -> tuple[Point, ...]:

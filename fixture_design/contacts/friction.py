@@ -16,7 +16,7 @@ def friction_edges(normal: Point, friction: float, edges: int = 8, side: Side = 
     """Edges n + mu t of the friction cone, with unit normal component: the wrenches they carry replace n's own.
 
     In the plane these are n^- and n^+ of (2-79), (2-80), and the cone is exact. In space the circle of tangents t is
-    cut to ``edges`` directions; the outer pyramid's are longer by 1 / cos(pi / edges), so that its faces touch the cone.
+    cut to ``edges`` directions; the outer pyramid's are longer by 1 / cos(pi / edges): its faces touch the cone.
     Without friction it is the normal alone.
 
     Args:

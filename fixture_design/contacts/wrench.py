@@ -27,7 +27,7 @@ def face_vectors(points: Points, normals: Points) -> Rows:
     return np.concatenate([normals, cross(points, normals)], axis=1)
 
 
-def cross(points: Points, vectors: Points) -> Points:
+def cross(points: Points, vectors: Points) -> Rows:
     """x X v row by row: shape (m, 1) in the plane, (m, 3) in space."""
     if points.shape[1] == 2:
         return (points[:, :1] * vectors[:, 1:] - points[:, 1:] * vectors[:, :1]).reshape(-1, 1)
@@ -42,7 +42,7 @@ def velocity(motion: Vector, point: Point) -> Point:
 
 
 def motion_about_origin(scaled: Vector, reference: Point, length: float) -> Vector:
-    """A motion in scaled coordinates [velocity of the reference point; rotation * length] as [dx; dtheta] about W's origin.
+    """A scaled motion [velocity of the reference point; rotation * length] as [dx; dtheta] about W's origin.
 
     It pairs with rows [n; (x - reference) X n / length]: the products d . u are the same before and after.
     """

@@ -1,0 +1,24 @@
+"""Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
+
+from fixture_design.io.documents import Document, read_document
+from fixture_design.io.json_writer import dumps
+from fixture_design.io.layout_file import layout_from_data, read_layout, write_layout
+from fixture_design.io.places import Place
+from fixture_design.io.problems import ContentError
+from fixture_design.io.schemas import json_schema, schema_names
+from fixture_design.io.verdict_record import error_record, verdict_to_dict
+
+__all__ = [
+    "ContentError",
+    "Document",
+    "Place",
+    "dumps",
+    "error_record",
+    "json_schema",
+    "layout_from_data",
+    "read_document",
+    "read_layout",
+    "schema_names",
+    "verdict_to_dict",
+    "write_layout",
+]

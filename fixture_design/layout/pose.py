@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points, read_only
+from fixture_design.arrays import ArrayLike, Point, Points, read_only
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,14 +22,14 @@ class Pose:
         return cls(read_only(np.eye(plane)), read_only(np.zeros(plane)))
 
     @classmethod
-    def from_xyz_rpy(cls, xyz: object, rpy: object) -> Pose:
+    def from_xyz_rpy(cls, xyz: ArrayLike, rpy: ArrayLike) -> Pose:
         """As in URDF: R = Rz(yaw) Ry(pitch) Rx(roll), lengths in metres, angles in radians."""
         roll, pitch, yaw = np.asarray(rpy, dtype=np.float64)
         x_turn, y_turn, z_turn = _turn(roll, 1, 2), _turn(pitch, 2, 0), _turn(yaw, 0, 1)
         return cls(read_only(z_turn @ y_turn @ x_turn), read_only(xyz))
 
     @classmethod
-    def from_xy_theta(cls, xy: object, theta: float) -> Pose:
+    def from_xy_theta(cls, xy: ArrayLike, theta: float) -> Pose:
         """Planar: counter-clockwise by theta [rad], then moved by xy [m]."""
         return cls(read_only(_turn(theta, 0, 1)[:2, :2]), read_only(xy))
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Point, Vector
 from fixture_design.cones import PolyhedralConvexCone
 from fixture_design.contacts import Contact
 from fixture_design.layout.layout import Requirement, Space
@@ -132,8 +132,6 @@ class Verdict:
     contacts: tuple[Contact, ...]
     requirements: tuple[RequirementVerdict, ...]
     notes: tuple[str, ...]
-    reference: Vector
+    reference: Point
     length: float
     run: Mapping[str, object] = field(default_factory=dict)
-
-

@@ -14,7 +14,7 @@ from itertools import product
 
 import numpy as np
 
-from fixture_design.arrays import Rows, Vector
+from fixture_design.arrays import Point, Rows, Vector
 from fixture_design.contacts import Clause, Contact, friction_edges
 from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
 from fixture_design.tolerances import WITNESS
@@ -35,7 +35,7 @@ def check(verdict: Verdict) -> list[str]:
     return problems
 
 
-def check_group(group: GroupVerdict, contacts: Sequence[Contact], reference: Vector, length: float) -> list[str]:
+def check_group(group: GroupVerdict, contacts: Sequence[Contact], reference: Point, length: float) -> list[str]:
     """Problems of one group's findings; empty groups have none to have."""
     problems = []
     for claim, finding in group.findings.items():
@@ -48,7 +48,7 @@ def check_group(group: GroupVerdict, contacts: Sequence[Contact], reference: Vec
 
 
 def _check_finding(
-    claim: str, finding: Finding, contacts: Sequence[Contact], reference: Vector, length: float
+    claim: str, finding: Finding, contacts: Sequence[Contact], reference: Point, length: float
 ) -> str | None:
     evidence = finding.evidence
     if evidence is None:
@@ -71,9 +71,9 @@ def _check_finding(
 
 
 def motion_value(
-    motion: Vector, contacts: Sequence[Contact], reference: Vector, length: float, *, friction: bool
+    motion: Vector, contacts: Sequence[Contact], reference: Point, length: float, *, friction: bool
 ) -> float:
-    """max over contacts and clauses of min over alternatives of n . v (+ mu |v_t|), for the motion scaled to size one."""
+    """max over contacts and clauses of min over alternatives of n . v (+ mu |v_t|), the motion scaled to size one."""
     plane = len(reference)
     turning = motion[plane:]
     size = np.linalg.norm(np.concatenate([_velocity(motion, reference), turning * length]))
@@ -86,12 +86,12 @@ def motion_value(
     return float(worst)
 
 
-def _work(unit: Vector, v: Vector, mu: float) -> float:
+def _work(unit: Point, v: Point, mu: float) -> float:
     along = float(unit @ v)
     return along + mu * float(np.linalg.norm(v - along * unit))
 
 
-def _velocity(motion: Vector, point: Vector) -> Vector:
+def _velocity(motion: Vector, point: Point) -> Point:
     if len(point) == 2:
         return motion[:2] + motion[2] * np.array([-point[1], point[0]])
     return motion[:3] + np.cross(motion[3:], point)
@@ -100,7 +100,7 @@ def _velocity(motion: Vector, point: Vector) -> Vector:
 def _check_weights(
     weights: Weights,
     contacts: Sequence[Contact],
-    reference: Vector,
+    reference: Point,
     length: float,
     friction: bool,
     edges: int,
@@ -146,7 +146,7 @@ def _taken(clause: Clause, choice: int | None) -> int | None:
     return 0 if len(clause) == 1 else choice
 
 
-def _rows(contact: Contact, normal: Vector, mu: float, edges: int, reference: Vector, length: float) -> Rows:
+def _rows(contact: Contact, normal: Point, mu: float, edges: int, reference: Point, length: float) -> Rows:
     lever = contact.point - reference
     forces = friction_edges(normal, mu, edges)
     if len(lever) == 2:
@@ -185,11 +185,13 @@ def _covered(
 
 
 def _check_rank(
-    answer: Answer | None, evidence: Singular, contacts: Sequence[Contact], reference: Vector, length: float
+    answer: Answer | None, evidence: Singular, contacts: Sequence[Contact], reference: Point, length: float
 ) -> str | None:
     """'No' needs one branch and a motion orthogonal to all its rows; 'yes' the rank of every branch."""
     dimension = contacts[0].dimension
-    clauses = [[_rows(c, normal, 0.0, 0, reference, length) for normal in clause] for c in contacts for clause in c.clauses]
+    clauses = [
+        [_rows(c, normal, 0.0, 0, reference, length) for normal in clause] for c in contacts for clause in c.clauses
+    ]
     if answer is Answer.NO:
         if evidence.motion is None:
             return "no motion"

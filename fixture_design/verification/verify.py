@@ -171,7 +171,7 @@ def _requirement_verdicts(
     for group in groups:
         for require in group.require:
             if not group.contacts:
-                notes.append(f"{group.name}: {require} is required of a group without contacts, which satisfies nothing")
+                notes.append(f"{group.name}: {require} is required of a group without contacts: not satisfied")
                 found.append(RequirementVerdict(group.name, require, None))
             elif require in QUESTIONS:
                 found.append(RequirementVerdict(group.name, require, verdicts[group.name].findings[require].answer))

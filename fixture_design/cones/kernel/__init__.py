@@ -22,6 +22,5 @@ __all__ = [
     "double_description",
     "minimum_norm_point",
     "nonnegative_least_squares",
-
     "tucker_partition",
 ]

@@ -1,4 +1,4 @@
-"""CONVERT by double description (T. S. Motzkin et al., 1953; K. Fukuda, A. Prodon, Double description method revisited).
+"""CONVERT by double description (T. S. Motzkin et al., 1953; K. Fukuda, A. Prodon, 1996).
 
 The cone face{a_1..a_m} is kept as a basis of its lines and a list of its extreme rays, each with the rows that it makes
 active. A row more costs one step: rays on its right side go, and every adjacent pair across the row leaves a new ray on
@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
 
 from fixture_design.arrays import Incidence, Rows, Vector
 from fixture_design.errors import ConeError
@@ -68,7 +69,7 @@ class DoubleDescription:
             seen_zero = self.zero_max
         return self._cut_rays(row, seen_zero)
 
-    def _cut_a_line(self, row: Vector, direction: Vector, length: float) -> DoubleDescription:
+    def _cut_a_line(self, row: Vector, direction: Float[np.ndarray, " l"], length: float) -> DoubleDescription:
         """A line crosses the row: it turns into one ray, everything else slides along it onto the row."""
         line = direction @ self.lines
         remaining = _orthonormal_rest(self.lines, direction)
@@ -109,7 +110,9 @@ class DoubleDescription:
             nonzero_min=nonzero_min,
         )
 
-    def _rays_between(self, above: np.ndarray, below: np.ndarray, heights: Vector) -> tuple[Rows, Incidence]:
+    def _rays_between(
+        self, above: np.ndarray, below: np.ndarray, heights: Float[np.ndarray, " rays"]
+    ) -> tuple[Rows, Incidence]:
         """One ray on the new row for every adjacent pair across it."""
         pairs = self._adjacent_pairs(above, below)
         upper, lower = pairs[:, 0], pairs[:, 1]
@@ -137,7 +140,7 @@ class DoubleDescription:
         return np.vstack(found) if found else np.zeros((0, 2), dtype=int)
 
 
-def _orthonormal_rest(lines: Rows, direction: Vector) -> Rows:
+def _orthonormal_rest(lines: Float[np.ndarray, "l d"], direction: Float[np.ndarray, " l"]) -> Rows:
     """Orthonormal basis of the part of span(lines) orthogonal to ``direction`` (given in the lines' coordinates)."""
     complement = np.linalg.svd(direction[None, :], full_matrices=True)[2][1:]
     return complement @ lines

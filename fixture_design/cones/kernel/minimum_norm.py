@@ -32,9 +32,14 @@ def minimum_norm_point(rows: Rows) -> tuple[Vector, Weights]:
     point = rows[corral[0]].copy()
     length = float(np.linalg.norm(point))
     refused = np.zeros(count, dtype=bool)
-    # every major cycle shortens the point, so no corral returns; the bound is a guard against rounding
+    seen = {frozenset(corral)}
+    # in exact arithmetic every major cycle shortens the point, so that no corral returns. A step along almost all of a
+    # unit row from a point close to the origin gains less than rounding, yet the next one may go all the way: steps
+    # that lose no more than rounding are taken too, and corrals that return are refused.
     for _ in range(20 * count + 200):
-        if length <= _ARRIVED * size:
+        # d + 1 independent rows around the origin: what is left of the length is rounding, and no row can take it out
+        around = len(corral) > rows.shape[1] and length <= _IMPROVES * size
+        if around or length <= _ARRIVED * size:
             break
         heights = rows @ (point / length)
         heights[refused] = np.inf
@@ -45,11 +50,12 @@ def minimum_norm_point(rows: Rows) -> tuple[Vector, Weights]:
         new_corral, new_barycentric = _descend(rows, [*corral, entering], np.append(barycentric, 0.0))
         new_point = new_barycentric @ rows[new_corral]
         new_length = float(np.linalg.norm(new_point))
-        # a row may improve by less than rounding while the next one goes all the way
-        refused[entering] = new_length >= length
-        if new_length < length:
-            corral, barycentric, point, length = new_corral, new_barycentric, new_point, new_length
-            refused[:] = False
+        if new_length > length + _ARRIVED * size or frozenset(new_corral) in seen:
+            refused[entering] = True
+            continue
+        seen.add(frozenset(new_corral))
+        corral, barycentric, point, length = new_corral, new_barycentric, new_point, new_length
+        refused[:] = False
     weights = np.zeros(count)
     weights[corral] = barycentric
     return point, weights

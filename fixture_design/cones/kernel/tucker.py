@@ -8,7 +8,7 @@ exactly one of  w_i > 0  and  d_i . u < 0  holds. So the rows split, uniquely, i
 * the rest, all of which a single motion u leaves at once: u is in the relative interior of face{D}.
 
 Every question of the thesis is read off this split: face{D} = {o} if and only if the balanced rows have rank d;
-its interior is empty if and only if B is not; a_j lies in the cone of other rows if and only if -a_j balances with them.
+its interior is empty if and only if B is not; a_j lies in the cone of others if and only if -a_j balances with them.
 
 The split is found by facial reduction: the nearest point of the rows' hull either separates them all (done), or is the
 origin and then its rows balance; the others are projected along the span of the balanced ones, and so on, at most d
@@ -120,7 +120,9 @@ def tucker_partition(rows: Rows, zero: float) -> TuckerPartition:
     return TuckerPartition(balanced, weights, span, motion, zero_max, nonzero_min)
 
 
-def _split(balanced: Float[np.ndarray, "k f"], free: Float[np.ndarray, "f d"], zero: float) -> tuple[Rows, Rows, float, float]:
+def _split(
+    balanced: Float[np.ndarray, "_ f"], free: Float[np.ndarray, "f d"], zero: float
+) -> tuple[Rows, Rows, float, float]:
     """Orthonormal bases of the part of ``free`` that the balanced rows span and of the rest of it.
 
     The rows are given in coordinates of ``free``: a row that was almost along the old span has lost its digits in
@@ -143,8 +145,8 @@ def _complement(span: Rows) -> Rows:
 
 
 def _with_level(
-    rows: Rows, core: np.ndarray, core_weights: Weights, chosen: np.ndarray, chosen_weights: Weights
-) -> tuple[np.ndarray, Weights]:
+    rows: Rows, core: np.ndarray, core_weights: np.ndarray, chosen: np.ndarray, chosen_weights: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Positive balanced weights on the rows of earlier levels and of this one.
 
     The new rows balance up to something in the span of the core; the core takes that up, with any sign, and enough of
@@ -157,16 +159,14 @@ def _with_level(
     return np.concatenate([core, chosen]), weights / weights.sum()
 
 
-def _taken_up(core_rows: Rows, core_weights: Weights, wrenches: np.ndarray) -> np.ndarray:
+def _taken_up(core_rows: Rows, core_weights: np.ndarray, wrenches: np.ndarray) -> np.ndarray:
     """Nonnegative weights of the core that balance wrenches from its span, shape (..., d) to (..., k)."""
     signed = -wrenches @ np.linalg.pinv(core_rows, rcond=_PSEUDO_RANK)
     lift = np.maximum(0.0, np.max(-signed / core_weights, axis=-1, keepdims=True))
     return np.maximum(signed + lift * core_weights, 0.0)
 
 
-def positive_balance(
-    rows: Rows, balanced: Mask, core: np.ndarray, core_weights: Weights, zero: float
-) -> Weights:
+def positive_balance(rows: Rows, balanced: Mask, core: np.ndarray, core_weights: np.ndarray, zero: float) -> np.ndarray:
     """Weights w > 0, sum 1, with D^T w = 0, for the rows that balance; as even as one projection makes them.
 
     The nearest balanced weights to (1, ..., 1) are positive for most sets; else every row is balanced by the core, the

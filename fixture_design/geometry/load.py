@@ -1,0 +1,46 @@
+"""From a part as a layout names it to its geometry: read, scaled to metres, checked, wound outward."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fixture_design.errors import GeometryError, UnsupportedError
+from fixture_design.geometry.mesh_file import read_mesh
+from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.piece import Piece, rounding_of
+from fixture_design.geometry.soundness import size_notes, sound
+from fixture_design.geometry.urdf import read_urdf
+from fixture_design.layout import Part
+
+
+def load_part(part: Part) -> PartGeometry:
+    """The geometry of a spatial part, in its frame P [m].
+
+    Mesh vertices are multiplied by ``part.scale``; the meshes of a URDF file carry their own scale.
+
+    Raises:
+        GeometryError: a mesh that is empty, not finite, flat, not closed or wound inconsistently; a planar part.
+        FileFormatError: a file that is missing or not what its name says.
+        UnsupportedError: STEP; other kinds of files; movable joints; cylinders and spheres in URDF.
+    """
+    if part.kind == "step":
+        expected = "a mesh of the part (STL, OBJ, DAE, PLY), or URDF"
+        raise UnsupportedError("this version does not read STEP", source=part.file, expected=expected)
+    if part.kind == "polygon" or part.file is None:
+        raise GeometryError(f"part {part.name!r} has no solid geometry", expected="a mesh or a URDF file")
+    if part.kind == "urdf":
+        pieces, notes = read_urdf(part.file)
+    else:
+        pieces, notes = [_mesh_piece(part.file, part.scale)], ()
+    geometry = PartGeometry.of_pieces(part.name, [sound(piece) for piece in pieces], notes)
+    return replace(geometry, notes=(*geometry.notes, *size_notes(geometry.vertices, part.file.name)))
+
+
+def _mesh_piece(file: Path, scale: float) -> Piece:
+    if not (np.isfinite(scale) and scale > 0):
+        raise GeometryError("scale must be a number > 0", source=file, found=str(scale))
+    vertices, triangles = read_mesh(file)
+    return Piece(vertices * scale, triangles, rounding_of(vertices) * scale, file)

@@ -1,0 +1,49 @@
+"""Which triangles of a part a point of its surface lies on, and how far the others are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fixture_design.arrays import Indices, Point
+from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.shapes import Corners, PerTriangle, Vector3
+
+
+def touched_triangles(geometry: PartGeometry, p_PC: Point, within: float) -> Indices:
+    """The triangles within a distance [m] of a surface point: one on a facet, two on an edge, more at an apex.
+
+    Boxes first: of thousands of triangles a handful is left to be measured.
+    """
+    low, high = geometry.triangle_boxes
+    candidates = np.flatnonzero((low[0] <= p_PC[0] + within) & (high[0] >= p_PC[0] - within))
+    for axis in (1, 2):
+        near = (low[axis, candidates] <= p_PC[axis] + within) & (high[axis, candidates] >= p_PC[axis] - within)
+        candidates = candidates[near]
+    return candidates[distances(geometry.vertices[geometry.triangles[candidates]], p_PC) <= within]
+
+
+def clearance(geometry: PartGeometry, p_PC: Point, touched: Indices) -> float:
+    """Distance from a surface point to the nearest triangle it does not touch [m]: within it the part is a cone."""
+    others = np.delete(np.arange(len(geometry.triangles)), touched)
+    if not len(others):
+        return geometry.half_diagonal
+    return float(distances(geometry.vertices[geometry.triangles[others]], p_PC).min())
+
+
+def distances(corners: Corners, point: Vector3) -> PerTriangle:
+    """Distance from a point to each triangle.
+
+    Args:
+        corners: shape (t, 3, 3), none of zero area.  point: shape (3,).
+
+    Returns:
+        shape (t,): to the plane where the point is above the triangle, else to its nearest side.
+    """
+    sides = np.roll(corners, -1, axis=1) - corners
+    away = point - corners
+    along = np.einsum("tkj,tkj->tk", away, sides) / np.maximum(np.einsum("tkj,tkj->tk", sides, sides), 1e-300)
+    to_sides = np.linalg.norm(away - np.clip(along, 0.0, 1.0)[:, :, None] * sides, axis=2).min(axis=1)
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    above = (np.einsum("tkj,tkj->tk", np.cross(normals[:, None, :], sides), away) >= 0).all(axis=1)
+    heights = np.abs(np.einsum("tj,tj->t", normals, away[:, 0])) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
+    return np.where(above, np.minimum(heights, to_sides), to_sides)

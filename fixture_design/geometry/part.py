@@ -1,0 +1,148 @@
+"""The geometry of a part in its own frame P: triangles, facets, and Drake's distance to its surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from fixture_design.arrays import read_only
+from fixture_design.geometry.distance import DistanceField
+from fixture_design.geometry.facets import Facet, facets_of
+from fixture_design.geometry.piece import Piece
+from fixture_design.geometry.planes import neighbours
+from fixture_design.geometry.shapes import (
+    DirectionMask,
+    Directions,
+    OfTriangle,
+    PerVertex,
+    Triangles,
+    Vector3,
+    Vertices,
+)
+from fixture_design.geometry.soundness import shells
+from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
+
+
+@dataclass(frozen=True, eq=False)
+class PartGeometry:
+    """A solid bounded by closed shells of triangles. What takes time is computed when first asked for, once.
+
+    Attributes:
+        name: for messages.
+        vertices: shape (v, 3) [m].  triangles: shape (t, 3), counter-clockwise seen from outside.
+        rounding: shape (v,), how far each vertex may be from what was meant [m].
+        notes: what was mended or looks doubtful, for people.
+    """
+
+    name: str
+    vertices: Vertices
+    triangles: Triangles
+    rounding: PerVertex
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of_pieces(cls, name: str, pieces: Sequence[Piece], notes: Sequence[str] = ()) -> PartGeometry:
+        """The sound pieces as one part. Their vertices stay apart: touching solids are shells of their own."""
+        starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+        triangles = np.vstack([piece.triangles + start for piece, start in zip(pieces, starts, strict=False)])
+        triangles.flags.writeable = False
+        return cls(
+            name,
+            read_only(np.vstack([piece.vertices for piece in pieces])),
+            triangles,
+            read_only(np.concatenate([piece.rounding for piece in pieces])),
+            (*notes, *(note for piece in pieces for note in piece.notes)),
+        )
+
+    @property
+    def low(self) -> Vector3:
+        return self.vertices.min(axis=0)
+
+    @property
+    def high(self) -> Vector3:
+        return self.vertices.max(axis=0)
+
+    @property
+    def box_center(self) -> Vector3:
+        """Centre of the bounding box in P, shape (3,) [m]."""
+        return (self.low + self.high) / 2
+
+    @property
+    def half_diagonal(self) -> float:
+        """Half the diagonal of the bounding box [m]."""
+        return float(np.linalg.norm(self.high - self.low)) / 2
+
+    @property
+    def on_edge(self) -> float:
+        """How near to an edge a point counts as on it [m]: no nearer than the edge itself is known."""
+        return max(2 * self.half_diagonal * MERGE_VERTICES, ON_EDGE_ROUNDINGS * float(self.rounding.max()))
+
+    @cached_property
+    def facets(self) -> tuple[Facet, ...]:
+        """The plane faces, in the order of their names."""
+        return facets_of(self.vertices, self.triangles, self.rounding)
+
+    @cached_property
+    def facet_of_triangle(self) -> OfTriangle:
+        """Index into `facets` for every triangle, shape (t,)."""
+        number = np.empty(len(self.triangles), dtype=np.int64)
+        for index, facet in enumerate(self.facets):
+            number[facet.triangles] = index
+        return number
+
+    @cached_property
+    def shell_of_triangle(self) -> OfTriangle:
+        """Which closed shell every triangle is of, shape (t,)."""
+        return shells(self.triangles, len(self.vertices))
+
+    @cached_property
+    def triangle_neighbours(self) -> Triangles:
+        """The triangle across each side of each triangle, shape (t, 3); -1 where more than two meet."""
+        return neighbours(self.triangles, len(self.vertices))
+
+    @cached_property
+    def surface(self) -> DistanceField:
+        """Drake's signed distance to the surface."""
+        return DistanceField(self.vertices, self.triangles, self.name)
+
+    @cached_property
+    def is_one_shell(self) -> bool:
+        """Whether the surface is a single closed shell with two triangles at each edge.
+
+        Then there are no cavities, and no solids that may overlap, or touch along a face or an edge.
+        """
+        return bool(self.shell_of_triangle.max() == 0 and (self.triangle_neighbours >= 0).all())
+
+    @cached_property
+    def triangle_boxes(self) -> tuple[Float[np.ndarray, "3 t"], Float[np.ndarray, "3 t"]]:
+        """Lowest and highest corner of each triangle's box, shape (3, t) each: a coordinate at a time is faster [m]."""
+        corners = self.vertices[self.triangles]
+        return np.ascontiguousarray(corners.min(axis=1).T), np.ascontiguousarray(corners.max(axis=1).T)
+
+    def inside(self, points: Directions) -> DirectionMask:
+        """Whether each point, shape (n, 3), is inside the material; not meant for points on the surface.
+
+        Solids that overlap or touch are one: a winding number says so, Drake's sign (of the nearest triangle) does not.
+        """
+        if self.is_one_shell:
+            return np.array([self.surface.at(point)[0] < 0 for point in points], dtype=bool)
+        return np.array([winding_number(self.vertices, self.triangles, point) > 0.5 for point in points], dtype=bool)
+
+
+def winding_number(vertices: Vertices, triangles: Triangles, point: Vector3) -> float:
+    """How often the surface surrounds a point: the sum of the triangles' solid angles over 4 pi.
+
+    Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983.
+    """
+    first, second, third = (vertices[triangles[:, corner]] - point for corner in range(3))
+    lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, third)]
+    above = np.einsum("ij,ij->i", first, np.cross(second, third))
+    below = np.prod(lengths, axis=0)
+    below += np.einsum("ij,ij->i", first, second) * lengths[2]
+    below += np.einsum("ij,ij->i", second, third) * lengths[0]
+    below += np.einsum("ij,ij->i", third, first) * lengths[1]
+    return float(np.arctan2(above, below).sum() / (2 * np.pi))

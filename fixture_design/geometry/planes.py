@@ -1,0 +1,99 @@
+"""Which triangles lie in one plane: facets grow from the largest triangle over neighbours that lie in its plane."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from fixture_design.geometry.piece import area_vectors, heights
+from fixture_design.geometry.shapes import (
+    OfTriangle,
+    PerTriangle,
+    PerVertex,
+    TriangleMask,
+    Triangles,
+    TriangleVectors,
+    Vertices,
+)
+from fixture_design.geometry.soundness import directed_edges
+from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES, ON_EDGE_ROUNDINGS
+
+
+def neighbours(triangles: Triangles, vertex_count: int) -> Triangles:
+    """The triangle across each directed edge, shape (t, 3): entry [i, k] shares the edge from corner k to k + 1.
+
+    -1 where an edge has more than two triangles (solids that touch along it): what is across is then not defined.
+    """
+    edges = directed_edges(triangles)
+    forward = edges[:, 0] * vertex_count + edges[:, 1]
+    backward = edges[:, 1] * vertex_count + edges[:, 0]
+    _, number, uses = np.unique(forward, return_inverse=True, return_counts=True)
+    order = np.argsort(forward, kind="stable")
+    place = order[np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)]
+    single = uses[number] == 1
+    found = (forward[place] == backward) & single & single[place]
+    return np.where(found, place // 3, -1).reshape(-1, 3)
+
+
+def plane_numbers(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> OfTriangle:
+    """Which facet each triangle is of, shape (t,), numbered from 0 in the order in which they were grown.
+
+    A neighbour belongs to the facet if its normal is within ``COPLANAR_ANGLE`` of the seed's and its corners lie in the
+    seed's plane as far as that angle allows. The normal of a sliver is noise, as the rounding of its vertices turns it
+    by more than that: it belongs if its corners lie in the plane up to that rounding. Comparing with the seed, the
+    largest triangle, and not with the triangle next door keeps a finely curved surface from becoming one facet.
+    """
+    areas = area_vectors(vertices, triangles)
+    lengths = np.linalg.norm(areas, axis=1)
+    units = areas / lengths[:, None]
+    noise = plane_noise(vertices, triangles, rounding)
+    sliver = noise > COPLANAR_ANGLE * heights(vertices, triangles)
+    grown = _Growth(vertices, triangles, units, noise, sliver)
+    # slivers seed last, whatever their area: their own plane is not known
+    for seed in np.lexsort((-lengths, sliver)).tolist():
+        grown.from_seed(seed)
+    return np.array(grown.number, dtype=np.int64)
+
+
+def plane_noise(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> PerTriangle:
+    """How far rounding may lift a triangle's corners out of their plane, shape (t,) [m]."""
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    return MERGE_VERTICES * size + ON_EDGE_ROUNDINGS * rounding[triangles].max(axis=1)
+
+
+class _Growth:
+    """Facets while they grow. Plain lists and floats: visiting triangles one by one is what numpy is slow at."""
+
+    def __init__(
+        self, vertices: Vertices, triangles: Triangles, units: TriangleVectors, noise: PerTriangle, sliver: TriangleMask
+    ) -> None:
+        self.corners = vertices[triangles].tolist()
+        self.units = units.tolist()
+        self.noise, self.sliver = noise.tolist(), sliver.tolist()
+        self.across = neighbours(triangles, len(vertices)).tolist()
+        self.number = [-1] * len(triangles)
+        self.count = 0
+
+    def from_seed(self, seed: int) -> None:
+        """A new facet from this triangle, unless it already is of one."""
+        if self.number[seed] >= 0:
+            return
+        self.number[seed] = self.count
+        waiting = deque([seed])
+        while waiting:
+            for other in self.across[waiting.popleft()]:
+                if other >= 0 and self.number[other] < 0 and self._belongs(other, seed):
+                    self.number[other] = self.count
+                    waiting.append(other)
+        self.count += 1
+
+    def _belongs(self, other: int, seed: int) -> bool:
+        (nx, ny, nz), (ox, oy, oz) = self.units[seed], self.corners[seed][0]
+        allowed = self.noise[other] + self.noise[seed]
+        if not self.sliver[other]:
+            ux, uy, uz = self.units[other]
+            if (ux - nx) ** 2 + (uy - ny) ** 2 + (uz - nz) ** 2 > COPLANAR_ANGLE**2:
+                return False
+            allowed += COPLANAR_ANGLE * max(abs(x - ox) + abs(y - oy) + abs(z - oz) for x, y, z in self.corners[other])
+        return all(abs((x - ox) * nx + (y - oy) * ny + (z - oz) * nz) <= allowed for x, y, z in self.corners[other])

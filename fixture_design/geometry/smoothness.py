@@ -1,0 +1,58 @@
+"""How far a facet's normal may be off: by the rounding of its vertices, or because it stands for a curved surface.
+
+A tessellated shaft is no set of facets: taken literally, a handful of point contacts on it would look form closed. A
+facet counts as a strip of a curved surface if it meets two or more neighbours smoothly (below ``SMOOTH_ANGLE``) and is
+not much wider than one of them. A flat between fillets meets them smoothly too, but is wider; chamfers meet their
+flats at 45 degrees. The last strip of a surface has one smooth neighbour only: it is judged with that neighbour.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from fixture_design.contacts import Provenance
+from fixture_design.tolerances import SLIVER_NOISE, SMOOTH_ANGLE, STRIP_WIDTH_RATIO
+
+
+@dataclass(frozen=True, eq=False)
+class FacetMeasures:
+    """What is needed of one facet to judge its normal.
+
+    Attributes:
+        width: smallest width [m].  noise: angle by which the rounding of its vertices may turn it [rad].
+        angles: dihedral angle to each neighbouring facet [rad], positive on convex edges.
+    """
+
+    width: float
+    noise: float
+    angles: Mapping[int, float]
+
+
+def provenances(outlines: Sequence[FacetMeasures]) -> tuple[Provenance, ...]:
+    """The provenance of each facet's normal."""
+    smooth = [_smooth_neighbours(outlines, facet) for facet in range(len(outlines))]
+    strips = {facet for facet in range(len(outlines)) if len(smooth[facet]) >= 2 and _narrow(outlines, facet, smooth)}
+    ends = {
+        facet
+        for facet in range(len(outlines))
+        if len(smooth[facet]) == 1 and strips.intersection(smooth[facet]) and _narrow(outlines, facet, smooth)
+    }
+    return tuple(
+        Provenance("approximate", max(outline.noise, *(abs(outline.angles[other]) for other in smooth[facet]), 0.0))
+        if facet in strips or facet in ends
+        else Provenance("exact", outline.noise)
+        for facet, outline in enumerate(outlines)
+    )
+
+
+def _smooth_neighbours(outlines: Sequence[FacetMeasures], facet: int) -> list[int]:
+    if outlines[facet].noise > SLIVER_NOISE:
+        return []
+    angles = outlines[facet].angles
+    return [o for o, angle in angles.items() if abs(angle) < SMOOTH_ANGLE and outlines[o].noise <= SLIVER_NOISE]
+
+
+def _narrow(outlines: Sequence[FacetMeasures], facet: int, smooth: Sequence[Sequence[int]]) -> bool:
+    """Whether it is not much wider than the widest of its smooth neighbours."""
+    return outlines[facet].width <= STRIP_WIDTH_RATIO * max(outlines[other].width for other in smooth[facet])

@@ -1,0 +1,86 @@
+"""What contacts ask of a surface, be it a solid's or a polygon's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from fixture_design.arrays import Point
+from fixture_design.geometry.local import LocalSurface, facets_at, feature_name, local_surface
+from fixture_design.geometry.nearest import touched_triangles
+from fixture_design.geometry.part import PartGeometry
+
+
+@runtime_checkable
+class Surface(Protocol):
+    """A closed surface in the part's frame P, of dimension 2 or 3; `Polygon` is one as it stands."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def half_diagonal(self) -> float: ...
+
+    @property
+    def precision(self) -> float:
+        """How near to an edge a point counts as on it [m]."""
+        ...
+
+    def nearest(self, p_PQ: Point) -> tuple[float, Point]:
+        """Signed distance, negative inside [m], and the nearest point of the surface."""
+        ...
+
+    def local(self, p_PC: Point) -> LocalSurface:
+        """The logic of the surface at one of its points."""
+        ...
+
+    def feature(self, p_PC: Point) -> str:
+        """The name of the facet, edge or apex at a point of the surface."""
+        ...
+
+    def slack(self, surface: LocalSurface) -> float:
+        """How far the true surface may lie behind this one there [m]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SolidSurface:
+    """The surface of a solid part."""
+
+    geometry: PartGeometry
+
+    @property
+    def name(self) -> str:
+        return self.geometry.name
+
+    @property
+    def half_diagonal(self) -> float:
+        return self.geometry.half_diagonal
+
+    @property
+    def precision(self) -> float:
+        return self.geometry.on_edge
+
+    def nearest(self, p_PQ: Point) -> tuple[float, Point]:
+        return self.geometry.surface.at(p_PQ)
+
+    def local(self, p_PC: Point) -> LocalSurface:
+        return local_surface(self.geometry, p_PC)
+
+    def feature(self, p_PC: Point) -> str:
+        return feature_name(
+            self.geometry, facets_at(self.geometry, touched_triangles(self.geometry, p_PC, self.precision))
+        )
+
+    def slack(self, surface: LocalSurface) -> float:
+        """Of a strip of width w, tilted by e against its neighbours: w sin e.
+
+        In a bore of radius R, cut to strips w = R e wide, a ball of radius r that touches a strip anywhere cuts its
+        neighbours by at most w^2 / (8 (R - r)), which is less unless the ball all but fills the bore.
+        """
+        if surface.provenance.kind == "exact":
+            return 0.0
+        width = max(self.geometry.facets[facet].width for facet in surface.facets)
+        return width * float(np.sin(min(surface.provenance.normal_error, np.pi / 2)))

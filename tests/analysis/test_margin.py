@@ -1,0 +1,76 @@
+"""Margins against brute force: s is the smallest value of max_i d_i . u on the unit sphere."""
+
+import numpy as np
+import pytest
+
+from fixture_design.analysis.bounds import bounds_of, closure_bound
+from fixture_design.analysis.hull import nearest_facet
+from fixture_design.analysis.margin import branch_margin, closure_margin
+from fixture_design.cones.kernel import tucker_partition
+from fixture_design.contacts import Contact, Scale, constraints_of
+from fixture_design.tolerances import DEFAULT
+
+
+def unit(rows: np.ndarray) -> np.ndarray:
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+
+
+def closed_rows(rng: np.random.Generator, dimension: int, count: int) -> np.ndarray:
+    while True:
+        rows = unit(rng.normal(size=(count, dimension)))
+        if tucker_partition(rows, DEFAULT.tie).closes:
+            return rows
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(("dimension", "count"), [(3, 5), (3, 30), (6, 9), (6, 14), (6, 40)])
+def test_margin_of_closed_rows(dimension: int, count: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = closed_rows(rng, dimension, count)
+    found = nearest_facet(rows)
+    assert found is not None
+    margin, motion = found
+    assert np.max(rows @ motion) == pytest.approx(margin, abs=1e-12)
+    sampled = np.max(rows @ unit(rng.normal(size=(20_000, dimension))).T, axis=0).min()
+    assert 0 < margin <= sampled + 1e-12
+    around = unit(motion + 1e-3 * rng.normal(size=(2_000, dimension)))
+    assert np.max(rows @ around.T, axis=0).min() >= margin - 1e-12
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_margin_of_open_rows_is_the_distance_of_the_hull(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = unit(np.column_stack([rng.normal(size=(8, 5)), np.full(8, 1.5)]))
+    margin = branch_margin(rows)
+    sampled = np.max(rows @ unit(rng.normal(size=(20_000, 6))).T, axis=0).min()
+    assert margin is not None
+    assert margin < 0
+    assert margin <= sampled + 1e-12
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_bounds_enclose_the_margin(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows = closed_rows(rng, 6, int(rng.integers(7, 15)))
+    exact = nearest_facet(rows)
+    assert exact is not None
+    bounds = bounds_of(rows, np.zeros(len(rows)), DEFAULT)
+    assert 0 < bounds.lower <= exact[0] + 1e-12
+    assert bounds.weights is not None
+    assert closure_bound(rows, bounds.weights) <= exact[0] + 1e-12
+    # errors of the normals lower what is proved by at most their size
+    wide = bounds_of(rows, np.full(len(rows), 1e-3), DEFAULT)
+    assert wide.lower <= bounds.lower - 1e-3 + 1e-12
+
+
+def test_margin_of_a_union_is_that_of_its_worst_branch() -> None:
+    square = [([1, 0], [1, 0.2]), ([-1, 0], [-1, 0.2]), ([0, 1], [0.3, 1]), ([0, -1], [0.3, -1])]
+    single = [Contact.on_facet(f"C{i}", "locator", p, n) for i, (p, n) in enumerate(square)]
+    either = Contact("E", "locator", np.array([1.0, 1.0]), ((np.array([1.0, 0.0]), np.array([0.0, 1.0])),))
+    scale = Scale(np.zeros(2), 1.0)
+    whole = closure_margin(constraints_of([*single, either], scale))
+    parts = [
+        closure_margin(constraints_of([*single, Contact("E", "locator", either.point, ((normal,),))], scale))
+        for normal in either.normals
+    ]
+    assert whole == pytest.approx(min(p for p in parts if p is not None))
