@@ -113,7 +113,8 @@ class OffSurfaceError(GeometryError):
 
 def format_length(metres: float) -> str:
     """A length as people write it: 4.2 mm, 0.35 um, 1.2 m (input in metres)."""
-    for factor, unit in ((1.0, "m"), (1e3, "mm"), (1e6, "um")):
-        if abs(metres) * factor >= 1 or unit == "um":
-            return f"{metres * factor:.3g} {unit}"
-    raise AssertionError("unreachable: micrometres take everything")
+    for factor, unit in ((1.0, "m"), (1e3, "mm")):
+        text = f"{metres * factor:.3g}"
+        if abs(float(text)) >= 1:
+            return f"{text} {unit}"
+    return f"{metres * 1e6:.3g} um"

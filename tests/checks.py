@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear, nnls
 from scipy.spatial import ConvexHull
 
 from fixture_design.cones import PolyhedralConvexCone
@@ -193,11 +193,28 @@ def _gap_of_a_tie(rows: exact.Rows, floats: np.ndarray) -> float:
 
 
 def distance_to_hull(rows: np.ndarray) -> float:
-    """Distance of the origin from the hull of the rows, by nonnegative least squares."""
+    """Distance of the origin from the hull of the rows, checked by the plane that it touches.
+
+    Of two solvers the first that passes the check: scipy 1.17.1 has both stop early on some symmetric rows.
+    """
     target = np.zeros(rows.shape[1] + 1)
     target[-1] = 1.0
-    weights, _ = nnls(np.vstack([rows.T, np.ones(len(rows))]), target)
-    return float(np.linalg.norm(weights @ rows) / weights.sum())
+    matrix = np.vstack([rows.T, np.ones(len(rows))])
+    for solve in (_by_nnls, _by_trust_region):
+        weights = solve(matrix, target)
+        point = weights @ rows / weights.sum()
+        distance = float(np.linalg.norm(point))
+        if (rows @ point >= distance**2 - 1e-6 * distance - 1e-14).all():
+            return distance
+    raise AssertionError("neither solver found the nearest point of the hull")
+
+
+def _by_nnls(matrix: np.ndarray, target: np.ndarray) -> np.ndarray:
+    return nnls(matrix, target)[0]
+
+
+def _by_trust_region(matrix: np.ndarray, target: np.ndarray) -> np.ndarray:
+    return lsq_linear(matrix, target, (0, np.inf), method="trf", tol=1e-15, max_iter=500).x
 
 
 def depth_of_origin(rows: np.ndarray) -> float:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.analysis.hull import ROUNDING, nearest_facet
+from fixture_design.analysis.hull import ROUNDING, SAFE, nearest_facet
 from fixture_design.arrays import Rows, Vector, Weights
 from fixture_design.cones.kernel import TuckerPartition, tucker_partition
 from fixture_design.tolerances import Tolerances
@@ -101,4 +101,4 @@ def _hull_bounds(rows: Rows, errors: Weights, weights: Weights) -> Bounds:
         return Bounds(-np.inf, np.inf, None, None)
     margin, motion = found
     upper = float(np.max(rows @ motion + errors))
-    return Bounds(margin - ROUNDING - float(errors.max()), upper, motion, weights)
+    return Bounds(SAFE * margin - ROUNDING - float(errors.max()), upper, motion, weights)

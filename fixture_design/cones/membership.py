@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Rows, Vector
+from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.cones.cone import PolyhedralConvexCone, require_same_dimension, unit_rows, unit_vector
 from fixture_design.cones.convert import convert
 from fixture_design.cones.kernel import tucker_partition
@@ -27,7 +27,7 @@ def nonzero(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> boo
     return not tucker_partition(_inequalities(cone), tolerances.tie).closes
 
 
-def element(vector: object, cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> bool:
+def element(vector: ArrayLike, cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> bool:
     """ELEMENT(r, A): whether r is in A, up to a relative tolerance (2-43). The zero vector is in every cone.
 
     In span form r = sum c_j u_j is asked of the span vectors directly: r is in A if and only if -r balances with them.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from fixture_design.arrays import ArrayLike
 from fixture_design.cones.cone import PolyhedralConvexCone, require_same_dimension
 from fixture_design.cones.convert import convert
 from fixture_design.cones.membership import element, interior, nonzero, subset
@@ -54,7 +55,7 @@ def union_interior(union: ConeUnion, tolerances: Tolerances = DEFAULT) -> bool:
     return any(interior(cone, tolerances) for cone in union)
 
 
-def union_element(vector: object, union: ConeUnion, tolerances: Tolerances = DEFAULT) -> bool:
+def union_element(vector: ArrayLike, union: ConeUnion, tolerances: Tolerances = DEFAULT) -> bool:
     """Whether the vector is in some A_n."""
     return any(element(vector, cone, tolerances) for cone in union)
 

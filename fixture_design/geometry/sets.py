@@ -1,4 +1,4 @@
-"""Which facets exclude which at a point of the surface: from the sense of the edges there, or by looking into the part."""
+"""Which facets exclude which at a point of a surface: by the sense of the edges there, or by looking into the part."""
 
 from __future__ import annotations
 

@@ -29,30 +29,34 @@ class FacetMeasures:
     angles: Mapping[int, float]
 
 
-def provenances(outlines: Sequence[FacetMeasures]) -> tuple[Provenance, ...]:
+def provenances(measures: Sequence[FacetMeasures]) -> tuple[Provenance, ...]:
     """The provenance of each facet's normal."""
-    smooth = [_smooth_neighbours(outlines, facet) for facet in range(len(outlines))]
-    strips = {facet for facet in range(len(outlines)) if len(smooth[facet]) >= 2 and _narrow(outlines, facet, smooth)}
+    smooth = [_smooth_neighbours(measures, facet) for facet in range(len(measures))]
+    strips = {facet for facet in range(len(measures)) if len(smooth[facet]) >= 2 and _narrow(measures, facet, smooth)}
     ends = {
         facet
-        for facet in range(len(outlines))
-        if len(smooth[facet]) == 1 and strips.intersection(smooth[facet]) and _narrow(outlines, facet, smooth)
+        for facet in range(len(measures))
+        if len(smooth[facet]) == 1 and strips.intersection(smooth[facet]) and _narrow(measures, facet, smooth)
     }
-    return tuple(
-        Provenance("approximate", max(outline.noise, *(abs(outline.angles[other]) for other in smooth[facet]), 0.0))
-        if facet in strips or facet in ends
-        else Provenance("exact", outline.noise)
-        for facet, outline in enumerate(outlines)
-    )
+    curved = strips | ends
+    return tuple(_provenance(facet, index in curved) for index, facet in enumerate(measures))
 
 
-def _smooth_neighbours(outlines: Sequence[FacetMeasures], facet: int) -> list[int]:
-    if outlines[facet].noise > SLIVER_NOISE:
+def _provenance(facet: FacetMeasures, strip: bool) -> Provenance:
+    """Exact up to rounding; of a strip or a sliver (which may be one), off by up to its largest smooth angle."""
+    if not strip and facet.noise <= SLIVER_NOISE:
+        return Provenance("exact", facet.noise)
+    smooth = [abs(angle) for angle in facet.angles.values() if abs(angle) < SMOOTH_ANGLE]
+    return Provenance("approximate", max([facet.noise, *smooth]))
+
+
+def _smooth_neighbours(measures: Sequence[FacetMeasures], facet: int) -> list[int]:
+    if measures[facet].noise > SLIVER_NOISE:
         return []
-    angles = outlines[facet].angles
-    return [o for o, angle in angles.items() if abs(angle) < SMOOTH_ANGLE and outlines[o].noise <= SLIVER_NOISE]
+    angles = measures[facet].angles
+    return [o for o, angle in angles.items() if abs(angle) < SMOOTH_ANGLE and measures[o].noise <= SLIVER_NOISE]
 
 
-def _narrow(outlines: Sequence[FacetMeasures], facet: int, smooth: Sequence[Sequence[int]]) -> bool:
+def _narrow(measures: Sequence[FacetMeasures], facet: int, smooth: Sequence[Sequence[int]]) -> bool:
     """Whether it is not much wider than the widest of its smooth neighbours."""
-    return outlines[facet].width <= STRIP_WIDTH_RATIO * max(outlines[other].width for other in smooth[facet])
+    return measures[facet].width <= STRIP_WIDTH_RATIO * max(measures[other].width for other in smooth[facet])

@@ -138,9 +138,9 @@ class _Converter:
             return SphereTip(self.metres(tip.sphere))
         if tip.soft is not None:
             return SoftTip(self.metres(tip.soft))
-        if tip.pad is not None:
+        if tip.pad is not None and tip.along is not None:
             return PadTip(self.metres(tip.pad[0]), self.metres(tip.pad[1]), read_only(tip.along))
-        if tip.line is not None:
+        if tip.line is not None and tip.along is not None:
             return LineTip(self.metres(tip.line), read_only(tip.along))
         if tip.pin is not None:
             along = _vector(tip.along if tip.pin.along is None else tip.pin.along)

@@ -76,7 +76,7 @@ def test_incidence_tells_which_faces_a_ray_lies_on(vectors: Vectors):
     assert (found.incidence == on).all()
 
 
-@given(st.sampled_from([2, 3, 6]).flatmap(lambda d: float_rows(d)))
+@given(st.sampled_from([2, 3, 6]).flatmap(float_rows))
 def test_random_floats_of_any_length(rows: np.ndarray):
     """No exact answer to compare with: converted twice, the cone and its smallest form are the same."""
     cone = convert(PolyhedralConvexCone.from_faces(rows, dimension=rows.shape[1]))

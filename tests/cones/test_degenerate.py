@@ -1,4 +1,4 @@
-"""Several hundred degenerate cones, turned by a random float rotation and shaken by noise: no wrong structure unflagged.
+"""Several hundred degenerate cones, turned by a random rotation and shaken by noise: no wrong structure unflagged.
 
 An integer cone tells exactly how many extreme rays and lines there must be. Rotated by floats, its ties are off by
 rounding and by the noise. A wrong count is allowed only where `certain` is False, and that must be rare.

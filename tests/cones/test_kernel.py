@@ -64,7 +64,7 @@ def test_tucker_s_theorem_for_floats(rows: np.ndarray):
 
 @given(vector_sets(both_ways=False), st.randoms(use_true_random=False))
 def test_rows_added_one_by_one_in_any_order_give_the_cone(vectors: Vectors, random):
-    rows, kept = unit_rows(vectors.array)
+    rows, _ = unit_rows(vectors.array)
     order = list(range(len(rows)))
     random.shuffle(order)
     state = DoubleDescription.whole_space(vectors.dimension, ZERO)

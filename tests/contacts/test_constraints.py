@@ -108,7 +108,9 @@ def test_a_given_scale_is_used():
 
 def test_a_normal_s_error_becomes_an_error_of_its_row():
     exact = Contact.on_facet("P1", "locator", [0, 0, 0], [0, 0, 1])
-    fitted = Contact("P2", "locator", np.array([3.0, 0, 0]), ((np.array([0, 0, 1.0]),),), provenance=Provenance("fitted", 0.01))
+    fitted = Contact(
+        "P2", "locator", np.array([3.0, 0, 0]), ((np.array([0, 0, 1.0]),),), provenance=Provenance("fitted", 0.01)
+    )
     found = constraints_of([exact, fitted], Scale(np.zeros(3), 4.0))
     assert found.errors == pytest.approx([0.0, 0.0125])
 

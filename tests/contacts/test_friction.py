@@ -1,4 +1,4 @@
-"""Friction cones: exact in the plane (2-79, 2-80); in space inner pyramids are inside the cone, outer ones around it."""
+"""Friction cones: exact in the plane (2-79, 2-80); in space inner pyramids are inside, outer ones around the cone."""
 
 from fractions import Fraction
 

@@ -137,3 +137,13 @@ def test_stl_of_a_box_is_exact_in_any_unit(tmp_path: Path) -> None:
 
     geometry = load_part(part(write(tmp_path, box(0.05, 0.03, 0.02), "b.stl", 1 / 0.0254), 0.0254))
     assert [facet.normal_error for facet in geometry.facets] == [0.0] * 6
+
+
+def test_strips_narrower_than_their_vertices_are_known_are_not_called_exact(tmp_path: Path) -> None:
+    vertices, triangles = prism(circle(0.001, 60), 0.03)
+    geometry = loaded(tmp_path, (np.round(vertices, 6), triangles))
+    strips = [facet for facet in geometry.facets if facet.name in approximate(geometry)]
+    assert len(strips) == 60
+    for facet in strips:
+        true = unit([*facet.centroid[:2], 0])
+        assert np.arccos(np.clip(unit(facet.normal) @ true, -1, 1)) <= facet.normal_error
