@@ -37,6 +37,9 @@ COPLANAR_ANGLE = 1e-4
 #: more from strip to strip.
 SMOOTH_ANGLE = float(np.radians(35.0))
 
+#: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
+FARTHEST = 1e9
+
 #: Vertices closer than this are one vertex, relative to the size of the part [-].
 MERGE_VERTICES = 1e-9
 

@@ -4,13 +4,15 @@ The import hook comes first: it checks the annotations of every module of the pa
 """
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 from jaxtyping import install_import_hook
 
-install_import_hook("fixture_design", "beartype.beartype")
+if "--benchmark-enable" not in sys.argv:  # shapes are checked while testing, not while timing
+    install_import_hook("fixture_design", "beartype.beartype")
 
 settings.register_profile("ci", max_examples=60, deadline=None)
 settings.register_profile("thorough", max_examples=2000, deadline=None)

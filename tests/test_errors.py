@@ -21,7 +21,9 @@ def test_a_message_names_everything_it_knows() -> None:
 
 
 def test_unknown_names_list_the_known_ones() -> None:
-    assert "did you mean 'clamp'? there are: clamp, locator" in str(UnknownNameError("role", "clmp", ["locator", "clamp"]))
+    assert "did you mean 'clamp'? there are: clamp, locator" in str(
+        UnknownNameError("role", "clmp", ["locator", "clamp"])
+    )
     assert "there are: none" in str(UnknownNameError("role", "x", []))
 
 

@@ -73,7 +73,7 @@ def _mapped(cone: PolyhedralConvexCone, primal: Rows, polar: Rows) -> Polyhedral
     spans = PolyhedralConvexCone.from_span(
         _tidy(cone.spans @ primal.T), _tidy(cone.lines @ primal.T), dimension=cone.dimension
     )
-    return PolyhedralConvexCone(cone.dimension, faces.face_form, spans.span_form)
+    return PolyhedralConvexCone(cone.dimension, faces.face_form, spans.span_form, cone.certain)
 
 
 def _twist_matrix(scale: Scale) -> Rows:

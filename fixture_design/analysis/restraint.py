@@ -20,6 +20,7 @@ from fixture_design.contacts import (
     motion_scaled,
     scale_of,
 )
+from fixture_design.errors import ContactError
 from fixture_design.layout import Evidence, Finding, Motion, Weights
 from fixture_design.layout.verdict import Answer
 from fixture_design.tolerances import DEFAULT, Tolerances
@@ -44,7 +45,8 @@ class Restraint:
         cls, contacts: Sequence[Contact], report: Scale | None = None, tolerances: Tolerances = DEFAULT
     ) -> Restraint:
         """Without a report scale the contacts' own centroid and spread are taken."""
-        constraints_of(contacts)  # raises for what is no set of contacts
+        if not contacts:
+            raise ContactError("there are no contacts")
         return cls(tuple(contacts), report or scale_of(contacts), tolerances)
 
     @cached_property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import traceback
 from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated
 
@@ -11,6 +10,7 @@ import typer
 from typer.exceptions import TyperException
 
 from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.messages import say, say_internal_error
 from fixture_design.cli.schema import schema
 from fixture_design.cli.verify import verify
 from fixture_design.cones.kernel import NAME as KERNEL
@@ -52,18 +52,18 @@ def main() -> None:
     try:
         code = app(standalone_mode=False)
     except InputError as error:
-        typer.echo(f"fixture-design: {error}", err=True)
+        say(str(error))
         code = ExitCode.BAD_INPUT
     except (KeyboardInterrupt, typer.Abort):
-        typer.echo("fixture-design: interrupted", err=True)
+        say("interrupted")
         code = ExitCode.INTERRUPTED
     except typer.Exit as leaving:
         code = leaving.exit_code
     except TyperException as error:
-        typer.echo(f"fixture-design: {error.format_message()}; see fixture-design --help", err=True)
+        if problem := error.format_message():  # empty without arguments: the help is printed then
+            say(f"{problem.rstrip('.')}; see fixture-design --help")
         code = ExitCode.BAD_INPUT
     except Exception as error:  # noqa: BLE001 - the last resort: say that it is our fault, with all there is to know
-        traceback.print_exc()
-        typer.echo(f"fixture-design: internal error ({type(error).__name__}); this is a fault of ours", err=True)
+        say_internal_error(error)
         code = ExitCode.INTERNAL_ERROR
     sys.exit(int(code or 0))

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode, of_answer, worst
+from fixture_design.cli.messages import met_in, say, say_internal_error
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, error_record, read_layout, verdict_to_dict
 
@@ -28,9 +29,13 @@ def verify(
         try:
             verdict = verify_layout(read_layout(path))
         except InputError as error:
-            error.within(path)
-            typer.echo(f"fixture-design: {error}", err=True)
+            say(met_in(path, error))
             codes.append(ExitCode.BAD_INPUT)
+            records.append(error_record(path, error))
+            continue
+        except Exception as error:  # noqa: BLE001 - a fault of ours in one layout must not cost the others' verdicts
+            say_internal_error(error, path)
+            codes.append(ExitCode.INTERNAL_ERROR)
             records.append(error_record(path, error))
             continue
         codes.append(of_answer(verdict.satisfied))

@@ -39,7 +39,8 @@ class PolyhedralConvexCone:
     """A polyhedral convex cone in R^d in face form, span form or both.
 
     Build one with `from_faces`, `from_span`, `whole_space` or `origin`; `convert` adds the missing form. Vectors keep
-    the scale they were given; zero vectors among them are allowed and say nothing. Arrays are read-only.
+    the scale they were given; zero vectors among them are allowed and say nothing. Arrays are read-only. ``certain`` is
+    False once a conversion met a value in the undecided band (`tolerances`): the cone may have another structure.
 
     Example:
         >>> quadrant = PolyhedralConvexCone.from_faces([[-1, 0], [0, -1]])
@@ -50,6 +51,7 @@ class PolyhedralConvexCone:
     dimension: int
     face_form: FaceForm | None = None
     span_form: SpanForm | None = None
+    certain: bool = True
 
     @classmethod
     def from_faces(

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,19 +54,20 @@ def convert(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Pol
     """
     if cone.span_form is None:
         found = convert_rows(cone.faces, cone.equalities, tolerances)
-        return PolyhedralConvexCone(cone.dimension, cone.face_form, SpanForm(found.vectors, found.lines))
+        span_form = SpanForm(found.vectors, found.lines)
+        return PolyhedralConvexCone(cone.dimension, cone.face_form, span_form, cone.certain and found.certain)
     if cone.face_form is None:
         found = convert_rows(cone.spans, cone.lines, tolerances)
-        return PolyhedralConvexCone(cone.dimension, FaceForm(found.vectors, found.lines), cone.span_form)
+        face_form = FaceForm(found.vectors, found.lines)
+        return PolyhedralConvexCone(cone.dimension, face_form, cone.span_form, cone.certain and found.certain)
     return cone
 
 
 def convert_both(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
     """The same cone with both forms as CONVERT makes them: irreducible, lines and equalities complete and apart."""
     known = convert(cone, tolerances)
-    spans = PolyhedralConvexCone(cone.dimension, span_form=known.span_form)
-    faces = convert(spans, tolerances)
-    return convert(PolyhedralConvexCone(cone.dimension, face_form=faces.face_form), tolerances)
+    faces = convert(replace(known, face_form=None), tolerances)
+    return convert(replace(faces, span_form=None), tolerances)
 
 
 def convert_rows(rows: Rows, equalities: Rows, tolerances: Tolerances = DEFAULT) -> Conversion:

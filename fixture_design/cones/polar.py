@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fixture_design.cones.cone import FaceForm, PolyhedralConvexCone, SpanForm, require_same_dimension
@@ -17,7 +19,7 @@ def dual(cone: PolyhedralConvexCone) -> PolyhedralConvexCone:
     """
     face = FaceForm(cone.spans, cone.lines) if cone.span_form is not None else None
     span = SpanForm(cone.faces, cone.equalities) if cone.face_form is not None else None
-    return PolyhedralConvexCone(cone.dimension, face, span)
+    return PolyhedralConvexCone(cone.dimension, face, span, cone.certain)
 
 
 def intersect(*cones: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
@@ -28,11 +30,10 @@ def intersect(*cones: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) ->
     """
     dimension = require_same_dimension(*cones)
     known = [convert(cone, tolerances) if cone.face_form is None else cone for cone in cones]
-    return PolyhedralConvexCone.from_faces(
-        np.vstack([cone.faces for cone in known]),
-        np.vstack([cone.equalities for cone in known]),
-        dimension=dimension,
-    )
+    faces = np.vstack([cone.faces for cone in known])
+    equalities = np.vstack([cone.equalities for cone in known])
+    together = PolyhedralConvexCone.from_faces(faces, equalities, dimension=dimension)
+    return replace(together, certain=all(cone.certain for cone in known))
 
 
 def convex_sum(*cones: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
@@ -42,8 +43,7 @@ def convex_sum(*cones: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -
     """
     dimension = require_same_dimension(*cones)
     known = [convert(cone, tolerances) if cone.span_form is None else cone for cone in cones]
-    return PolyhedralConvexCone.from_span(
-        np.vstack([cone.spans for cone in known]),
-        np.vstack([cone.lines for cone in known]),
-        dimension=dimension,
-    )
+    spans = np.vstack([cone.spans for cone in known])
+    lines = np.vstack([cone.lines for cone in known])
+    together = PolyhedralConvexCone.from_span(spans, lines, dimension=dimension)
+    return replace(together, certain=all(cone.certain for cone in known))

@@ -26,7 +26,7 @@ def reduce(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Poly
     if cone.span_form is not None:
         spans, lines = _irreducible(cone.spans, cone.lines, tolerances)
         span = PolyhedralConvexCone.from_span(spans, lines, dimension=cone.dimension).span_form
-    return PolyhedralConvexCone(cone.dimension, face, span)
+    return PolyhedralConvexCone(cone.dimension, face, span, cone.certain)
 
 
 def irreducible_rows(rows: Rows, both_ways: Rows, tolerances: Tolerances = DEFAULT) -> Indices:

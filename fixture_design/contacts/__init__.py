@@ -1,7 +1,7 @@
 """Contacts as unidirectional constraints (thesis 2.2): points, normals with their logic, face vectors, friction."""
 
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
-from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role
+from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, unit_normal
 from fixture_design.contacts.friction import Side, friction_edges
 from fixture_design.contacts.wrench import face_vectors, motion_about_origin, motion_scaled, velocity
 
@@ -20,5 +20,6 @@ __all__ = [
     "motion_about_origin",
     "motion_scaled",
     "scale_of",
+    "unit_normal",
     "velocity",
 ]

@@ -20,6 +20,7 @@ import numpy as np
 
 from fixture_design.arrays import ArrayLike, Point, read_only
 from fixture_design.errors import ContactError, DimensionError
+from fixture_design.tolerances import FARTHEST
 
 #: What an element or contact is for. Supports come up after clamping and locate nothing.
 Role = Literal["locator", "support", "clamp", "finger"]
@@ -57,7 +58,7 @@ class Contact:
         feature: name of the facet, edge or apex touched, None for contacts given outright.
 
     Raises:
-        ContactError: no normal, zero or non-finite normal, non-finite point, negative or non-finite friction.
+        ContactError: no normal, zero or non-finite normal, non-finite or absurdly far point, negative friction.
         DimensionError: point and normals of different or unusable length.
 
     Example:
@@ -81,8 +82,8 @@ class Contact:
         object.__setattr__(self, "clauses", clauses)
         if point.shape not in ((2,), (3,)):
             raise DimensionError(f"contact {self.name!r}: a point has 2 or 3 coordinates, not shape {point.shape}")
-        if not np.isfinite(point).all():
-            raise ContactError(f"contact {self.name!r}: the point is not finite: {point.tolist()}")
+        if not (np.isfinite(point).all() and np.abs(point).max() <= FARTHEST):
+            raise ContactError(f"contact {self.name!r}: the point must be finite and within {FARTHEST:g} m: {point}")
         if not clauses or not all(clauses):
             raise ContactError(f"contact {self.name!r} has no normal")
         for normal in self.normals:
@@ -122,3 +123,9 @@ class Contact:
     def dimension(self) -> int:
         """Dimension of its face vectors: 3 in the plane, 6 in space."""
         return 3 if len(self.point) == 2 else 6
+
+
+def unit_normal(normal: Point) -> Point:
+    """The normal at length one; in two steps, since the square of 1e-200 is zero."""
+    scaled = normal / np.abs(normal).max()
+    return scaled / np.linalg.norm(scaled)

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from fixture_design.arrays import Point, Points
+from fixture_design.contacts.contact import unit_normal
 
 #: An inner pyramid has its edges on the cone, an outer one its faces around it.
 Side = Literal["inner", "outer"]
@@ -28,7 +29,7 @@ def friction_edges(normal: Point, friction: float, edges: int = 8, side: Side = 
 
     Source: thesis 2.7 (c).
     """
-    unit = normal / np.linalg.norm(normal)
+    unit = unit_normal(normal)
     if friction == 0:
         return unit[None, :]
     if len(unit) == 2:

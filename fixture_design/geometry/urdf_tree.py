@@ -61,8 +61,9 @@ def robot_of(file: Path) -> ElementTree.Element:
         robot = ElementTree.parse(file).getroot()
     except ElementTree.ParseError as cause:
         line, column = cause.position
+        found = str(cause).partition(": line")[0]  # the parser counts columns from 0, we from 1
         raise FileFormatError(
-            "not XML", source=file, place=f"line {line}, column {column + 1}", found=str(cause), expected="a URDF file"
+            "not XML", source=file, place=f"line {line}, column {column + 1}", found=found, expected="a URDF file"
         ) from cause
     if robot.tag != "robot":
         raise FileFormatError("not URDF", source=file, found=f"<{robot.tag}>", expected="<robot> as the root element")

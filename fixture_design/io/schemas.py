@@ -8,11 +8,10 @@ from pydantic import TypeAdapter
 
 from fixture_design.errors import UnknownNameError
 from fixture_design.io.records import LayoutRecord
-from fixture_design.io.verdict_schema import FailureRecord, VerdictRecord
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-_KINDS: dict[str, Any] = {"layout": LayoutRecord, "verdict": VerdictRecord | FailureRecord}
+_KINDS = ("layout", "verdict")
 
 
 def schema_names() -> list[str]:
@@ -31,12 +30,21 @@ def json_schema(name: str) -> dict[str, Any]:
     """
     if name not in _KINDS:
         raise UnknownNameError("file kind", name, _KINDS)
-    schema = TypeAdapter(_KINDS[name]).json_schema(by_alias=True)
+    schema = TypeAdapter(_record(name)).json_schema(by_alias=True)
     if name == "layout":
         schema = _without_nulls(schema)
     return {"$schema": _DIALECT, "$id": f"fixture_design/{name}/1", "title": f"fixture_design/{name}/1"} | {
         key: value for key, value in schema.items() if key != "title"
     }
+
+
+def _record(name: str) -> Any:
+    """The classes that describe a kind; those of verdicts only describe, so they are built only here."""
+    if name == "layout":
+        return LayoutRecord
+    from fixture_design.io.verdict_schema import FailureRecord, VerdictRecord  # noqa: PLC0415 - 20 ms of any start
+
+    return VerdictRecord | FailureRecord
 
 
 def _without_nulls(schema: Any) -> Any:

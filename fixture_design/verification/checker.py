@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from fixture_design.arrays import Point, Rows, Vector
-from fixture_design.contacts import Clause, Contact, friction_edges
+from fixture_design.contacts import Clause, Contact, friction_edges, unit_normal
 from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
 from fixture_design.tolerances import WITNESS
 
@@ -82,7 +82,7 @@ def motion_value(
         v = _velocity(motion, contact.point) / size
         mu = contact.friction if friction else 0.0
         for clause in contact.clauses:
-            worst = max(worst, min(_work(normal / np.linalg.norm(normal), v, mu) for normal in clause))
+            worst = max(worst, min(_work(unit_normal(normal), v, mu) for normal in clause))
     return float(worst)
 
 

@@ -25,7 +25,7 @@ from fixture_design.analysis import (
     strongly_accessible,
 )
 from fixture_design.cones.kernel import NAME as KERNEL
-from fixture_design.contacts import Contact, Scale, scale_of
+from fixture_design.contacts import Contact, Scale, scale_of, unit_normal
 from fixture_design.errors import ConeError, ContactError
 from fixture_design.layout import (
     Answer,
@@ -135,6 +135,8 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
         displacements = None
     if displacements is None or forces is None:
         return GroupVerdict(group.name, names, findings, bidirectional=bidirectional_contacts(restraint))
+    if not (forces.certain and all(cone.certain for cone in displacements)):
+        notes.append(f"{group.name}: the admissible sets have values in the undecided band; their form may be another")
     scale = restraint.constraints.scale
     return GroupVerdict(
         group.name,
@@ -161,7 +163,7 @@ def _same_normals(first: Contact, second: Contact) -> bool:
     if [len(clause) for clause in first.clauses] != [len(clause) for clause in second.clauses]:
         return False
     pairs = zip(first.normals, second.normals, strict=True)
-    return all(np.allclose(a / np.linalg.norm(a), b / np.linalg.norm(b), rtol=0, atol=DEFAULT.tie) for a, b in pairs)
+    return all(np.allclose(unit_normal(a), unit_normal(b), rtol=0, atol=DEFAULT.tie) for a, b in pairs)
 
 
 def _requirement_verdicts(

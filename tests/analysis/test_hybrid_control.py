@@ -75,7 +75,9 @@ def test_a_union_that_fills_a_subspace_only_together_is_not_one() -> None:
     assert not hybrid_control(halves).bidirectional
 
 
-@pytest.mark.parametrize(("force", "kind"), [([0, 1, 0], "reciprocal"), ([1, 0, 0], "repelling"), ([-1, 5, 0], "contrary")])
+@pytest.mark.parametrize(
+    ("force", "kind"), [([0, 1, 0], "reciprocal"), ([1, 0, 0], "repelling"), ([-1, 5, 0], "contrary")]
+)
 def test_measured_pairs(force: list[float], kind: str) -> None:
     assert classify_pair(force, [2, 0, 0]) == kind
 

@@ -115,6 +115,13 @@ def test_a_normal_s_error_becomes_an_error_of_its_row():
     assert found.errors == pytest.approx([0.0, 0.0125])
 
 
+def test_the_edges_of_a_friction_cone_are_longer_and_so_are_their_errors():
+    normals = ((np.array([0.0, 1.0]),),)
+    contact = Contact("P1", "locator", HERE, normals, friction=0.75, provenance=Provenance("fitted", 0.01))
+    found = constraints_of([contact], Scale(HERE, 1.0), with_friction=True)
+    assert found.errors == pytest.approx([0.0125, 0.0125])
+
+
 def test_unusable_contacts():
     with pytest.raises(ContactError, match="no contacts"):
         constraints_of([])
@@ -130,7 +137,7 @@ def test_unusable_contacts():
         ({"clauses": ((np.zeros(2),),)}, ContactError, "zero length"),
         ({"clauses": ((np.array([np.nan, 1]),),)}, ContactError, "normal is not finite"),
         ({"clauses": ((np.ones(3),),)}, DimensionError, "'P1': normal"),
-        ({"point": np.array([np.inf, 0])}, ContactError, "point is not finite"),
+        ({"point": np.array([np.inf, 0])}, ContactError, "point must be finite"),
         ({"point": np.ones(4)}, DimensionError, "2 or 3 coordinates"),
         ({"point": np.ones((2, 2))}, DimensionError, "2 or 3 coordinates"),
         ({"friction": -0.1}, ContactError, "friction must be"),

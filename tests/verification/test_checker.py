@@ -46,7 +46,9 @@ def test_a_motion_that_only_slides_is_not_strong() -> None:
 
 
 def doubled(weights: Weights) -> Weights:
-    return replace(weights, weights={n: tuple(2 * w for w in v) if n == "P1" else v for n, v in weights.weights.items()})
+    return replace(
+        weights, weights={n: tuple(2 * w for w in v) if n == "P1" else v for n, v in weights.weights.items()}
+    )
 
 
 def negative(weights: Weights) -> Weights:

@@ -87,7 +87,9 @@ def test_verdicts_that_flip_within_a_normal_error_are_undecided() -> None:
     points = np.column_stack([np.cos(angles), np.sin(angles)])
     exact = [Contact.on_facet(f"C{i}", "locator", p, n) for i, (p, n) in enumerate(zip(points, normals, strict=True))]
     rough = tuple(replace(contact, provenance=Provenance("approximate", 0.1)) for contact in exact)
-    assert verify(Layout("facets", "planar", contacts=tuple(exact))).groups["all"].findings["form_closure"].answer == "yes"
+    assert (
+        verify(Layout("facets", "planar", contacts=tuple(exact))).groups["all"].findings["form_closure"].answer == "yes"
+    )
     verdict = verify(Layout("facets", "planar", contacts=rough))
     assert verdict.groups["all"].findings["form_closure"].answer is Answer.UNDECIDED
     assert verdict.groups["all"].findings["accessible"].answer is Answer.UNDECIDED

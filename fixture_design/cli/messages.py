@@ -1,0 +1,28 @@
+"""What goes to stderr: one line where the input is at fault, all there is to know where we are."""
+
+from __future__ import annotations
+
+import traceback
+from pathlib import Path
+
+import typer
+
+from fixture_design.errors import InputError
+
+
+def say(message: str) -> None:
+    """One line on stderr, with the program's name."""
+    typer.echo(f"fixture-design: {message}", err=True)
+
+
+def met_in(path: Path, error: InputError) -> str:
+    """The error's message; it names the layout too where another file, such as its mesh, is at fault."""
+    error.within(path)
+    return str(error) if str(error.source) == str(path) else f"{path}: {error}"
+
+
+def say_internal_error(error: Exception, path: Path | None = None) -> None:
+    """The traceback, and that it is a fault of ours; call it where the exception is caught."""
+    traceback.print_exc()
+    where = f"{path}: " if path else ""
+    say(f"{where}internal error ({type(error).__name__}: {error}); this is a fault of ours")
