@@ -461,7 +461,7 @@ def _(rng: Random) -> list[ExactContact]:
     return [on_box(rng, 2) for _ in range(rng.randint(3, 7))]
 
 
-@kind("far from the origin, 1e6 sizes", "spatial", tilted=True, scales=(-3, 3), offset=10**6)
+@kind("far from the origin, 1e6 sizes", "spatial", tilted=True, scales=(-3, 2), offset=10**6)
 def _(rng: Random) -> list[ExactContact]:
     return [bulged(rng, 3) for _ in range(rng.randint(6, 10))]
 
