@@ -30,5 +30,6 @@ def test_unknown_names_list_the_known_ones() -> None:
 def test_off_surface() -> None:
     text = str(OffSurfaceError("L3", "bracket", 0.0042, "facet 12", 1e-5))
     assert text == (
-        "element 'L3' is 4.2 mm off the surface of 'bracket'; nearest: facet 12; move it there, or raise `surface_gap` (10 um)"
+        "element 'L3' is 4.2 mm off the surface of 'bracket'; nearest: facet 12; "
+        "move it there, or raise `surface_gap` (10 um)"
     )

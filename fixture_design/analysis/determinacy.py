@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice, product
 
 import numpy as np
@@ -40,11 +41,12 @@ def deterministic(restraint: Restraint) -> Finding:
         constraints.errors / lengths,
         restraint.tolerances.at_offset(constraints.scale.offset),
     )
-    outcome = search.visit([a[0] for a in search.alternatives if len(a) == 1])
+    outcome = search.visit([options[0] for options in search.alternatives if len(options) == 1], ())
     margin = determinacy_margin(restraint.reported)
     dimension = constraints.rows.shape[1]
-    if outcome is None:
-        return Finding(Answer.YES, margin, Singular(dimension, None, (), 0.0), 0.0)
+    if isinstance(outcome, _FullRank):
+        choices = tuple(restraint.choice(leaf, constraints) for leaf in outcome.leaves)
+        return Finding(Answer.YES, margin, Singular(dimension, None, choices, 0.0), 0.0)
     if outcome.motion is None:
         reason = f"the smallest singular value is {outcome.value:.1e}, neither zero nor clear of it"
         return Finding(Answer.UNDECIDED, margin, reason=reason)
@@ -53,7 +55,7 @@ def deterministic(restraint: Restraint) -> Finding:
     rows = restraint.reported.rows[restraint.reported.rows_of(outcome.choice)]
     residual = float(np.abs(rows @ scaled).max() / np.linalg.norm(scaled))
     choice = restraint.choice(outcome.choice, constraints)
-    return Finding(Answer.NO, margin, Singular(outcome.rank, motion, choice, residual), residual)
+    return Finding(Answer.NO, margin, Singular(outcome.rank, motion, (choice,), residual), residual)
 
 
 def determinacy_margin(constraints: Constraints) -> float | None:
@@ -69,6 +71,13 @@ def _last_singular_value(rows: Rows) -> float:
     if len(rows) < rows.shape[1]:
         return 0.0
     return float(np.linalg.svd(rows, compute_uv=False)[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class _FullRank:
+    """All branches below a choice have full rank: those of each leaf by the alternatives that the leaf names."""
+
+    leaves: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,30 +99,43 @@ class _RankSearch:
     errors: Weights
     tolerances: Tolerances
 
-    @property
+    @cached_property
     def alternatives(self) -> list[list[int]]:
         return [self.constraints.alternatives_of(c).tolist() for c in range(len(self.constraints.contact))]
 
-    def visit(self, choice: Sequence[int]) -> _Deficient | None:
-        """The first deficient branch that contains the choice, a doubtful one if there is no deficient one, or None."""
+    def visit(self, choice: Sequence[int], branched: tuple[int, ...]) -> _FullRank | _Deficient:
+        """The first deficient branch that contains the choice, a doubtful one if there is none, or full rank.
+
+        ``branched`` are the chosen alternatives whose siblings are looked at too; the others are in the span of the
+        choice, add nothing to the rank, and are not needed for a proof of full rank.
+        """
         rows = self.constraints.rows_of(choice)
         values, right = _singular(self.rows[rows])
         error = float(np.linalg.norm(self.errors[rows]))
         if values[-1] > self.tolerances.near + error:
-            return None
+            return _FullRank((branched,))
         unnoticed = right[values <= self.tolerances.near + error]
         clause, options = self._next(choice, unnoticed)
         if clause is None:
             certain = values[-1] <= self.tolerances.zero and not np.any(self.errors[rows])
             rank = int(np.sum(values > self.tolerances.tie))
             return _Deficient(tuple(choice), rank, float(values[-1]), right[-1] if certain else None)
-        doubtful = None
+        return self._visit_all(choice, branched, clause, options)
+
+    def _visit_all(
+        self, choice: Sequence[int], branched: tuple[int, ...], clause: int, options: list[int]
+    ) -> _FullRank | _Deficient:
+        doubtful, leaves = None, []
         for alternative in options:
-            found = self.visit([*choice, alternative])
-            if found is not None and found.motion is not None:
+            in_all = len(options) < len(self.alternatives[clause])
+            found = self.visit([*choice, alternative], branched if in_all else (*branched, alternative))
+            if isinstance(found, _FullRank):
+                leaves += found.leaves
+            elif found.motion is not None:
                 return found
-            doubtful = doubtful or found
-        return doubtful
+            else:
+                doubtful = doubtful or found
+        return doubtful or _FullRank(tuple(leaves))
 
     def _next(self, choice: Sequence[int], unnoticed: Rows) -> tuple[int | None, list[int]]:
         """The next clause and the alternatives of it to try, those that add least to the rank first."""

@@ -28,7 +28,7 @@ app.command()(verify)
 app.command()(schema)
 
 
-def _show_version(wanted: bool) -> None:
+def _show_version(wanted: bool) -> bool:
     if wanted:
         try:
             drake = version("drake")
@@ -36,6 +36,7 @@ def _show_version(wanted: bool) -> None:
             drake = "not installed"
         typer.echo(f"fixture-design {VERSION}, Drake {drake}, kernel {KERNEL}")
         raise typer.Exit
+    return wanted
 
 
 @app.callback()
@@ -55,7 +56,6 @@ def main() -> None:
         say(str(error))
         code = ExitCode.BAD_INPUT
     except (KeyboardInterrupt, typer.Abort):
-        say("interrupted")
         code = ExitCode.INTERRUPTED
     except typer.Exit as leaving:
         code = leaving.exit_code
@@ -66,4 +66,6 @@ def main() -> None:
     except Exception as error:  # noqa: BLE001 - the last resort: say that it is our fault, with all there is to know
         say_internal_error(error)
         code = ExitCode.INTERNAL_ERROR
+    if code == ExitCode.INTERRUPTED:  # Typer turns Ctrl-C into this code without a word
+        say("interrupted")
     sys.exit(int(code or 0))

@@ -25,4 +25,4 @@ def say_internal_error(error: Exception, path: Path | None = None) -> None:
     """The traceback, and that it is a fault of ours; call it where the exception is caught."""
     traceback.print_exc()
     where = f"{path}: " if path else ""
-    say(f"{where}internal error ({type(error).__name__}: {error}); this is a fault of ours")
+    say(f"{where}internal error ({type(error).__name__}); this is a fault of ours")

@@ -75,21 +75,28 @@ def convert_rows(rows: Rows, equalities: Rows, tolerances: Tolerances = DEFAULT)
 
     By Theorem 1 this serves both ways: face vectors give span vectors, span vectors (lines as equalities) give face
     vectors (equalities as lines). Where a value falls into the undecided band, the zero is moved down and up by a
-    factor of 100 and the first certain answer is taken.
+    factor of 100; what is certain then is taken, unless both are and differ.
 
     Args:
         rows: shape (m, d).  equalities: shape (e, d).  tolerances: relative size of a zero.
     """
     unit, kept = unit_rows(rows)
     unit_equalities, _ = unit_rows(equalities)
-    first = double_description(unit, unit_equalities, tolerances.tie)
-    found = first
-    for factor in (0.01, 100.0):
-        if found.is_certain(tolerances.band):
-            break
-        found = double_description(unit, unit_equalities, tolerances.tie * factor)
-    certain = found.is_certain(tolerances.band)
-    return _conversion(found if certain else first, kept, certain)
+    found = double_description(unit, unit_equalities, tolerances.tie)
+    if found.is_certain(tolerances.band):
+        return _conversion(found, kept, True)
+    others = [double_description(unit, unit_equalities, tolerances.tie * factor) for factor in (0.01, 100.0)]
+    certain = [other for other in others if other.is_certain(tolerances.band)]
+    if not certain or any(not _same_structure(certain[0], other) for other in certain[1:]):
+        return _conversion(found, kept, False)
+    return _conversion(certain[0], kept, True)
+
+
+def _same_structure(first: DoubleDescription, second: DoubleDescription) -> bool:
+    """As many lines, and the same rays by the rows they are on."""
+    if len(first.lines) != len(second.lines) or len(first.rays) != len(second.rays):
+        return False
+    return sorted(map(tuple, first.incidence)) == sorted(map(tuple, second.incidence))
 
 
 def _conversion(state: DoubleDescription, kept: np.ndarray, certain: bool) -> Conversion:

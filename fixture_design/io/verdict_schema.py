@@ -45,7 +45,9 @@ class RankRecord(Record):
 
     rank: int = Field(ge=0)
     motion: Row | None = None
-    choice: Choice | None = None
+    choices: list[Choice] | None = Field(
+        None, description="of the branch with the motion; without one, choices of full rank that cover all branches"
+    )
 
 
 class FindingRecord(Record):

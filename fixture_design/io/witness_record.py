@@ -28,8 +28,8 @@ def _singular(evidence: Singular) -> dict[str, object]:
     data: dict[str, object] = {"rank": int(evidence.rank)}
     if evidence.motion is not None:
         data["motion"] = plain_numbers(evidence.motion)
-    if evidence.choice:
-        data["choice"] = _choice(evidence.choice)
+    if any(evidence.choices):
+        data["choices"] = [_choice(choice) for choice in evidence.choices]
     return data
 
 

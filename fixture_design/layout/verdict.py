@@ -58,11 +58,20 @@ class Weights:
 
 @dataclass(frozen=True, eq=False)
 class Singular:
-    """Evidence for determinacy: the rank and, where it is short, a motion that no contact notices to first order."""
+    """Evidence for determinacy: the rank, and why it is that.
+
+    Attributes:
+        rank: of the branch with the lowest rank found.
+        motion: where the rank is short, a motion that no contact of the branch notices to first order; else None.
+        choices: the alternatives taken, as (contact, clause, alternative): for a motion those of its branch; else one
+            choice for each set of branches whose rows, with those that have no alternative, have full rank. Together
+            these cover all branches.
+        residual: |D u| at most, for the motion scaled to length one; 0 without.
+    """
 
     rank: int
     motion: Vector | None
-    choice: tuple[tuple[str, int, int], ...]
+    choices: tuple[tuple[tuple[str, int, int], ...], ...]
     residual: float
 
 

@@ -10,7 +10,6 @@ It starts again from points and normals, not from the arrays of the search, so t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import product
 
 import numpy as np
 
@@ -21,8 +20,6 @@ from fixture_design.tolerances import WITNESS
 
 #: Claims whose 'yes' is proved by weights that span (or by a motion that breaks none), and whether friction counts.
 _CLOSURES = {"form_closure": False, "accessible": False, "force_closure": True}
-#: Branches looked at one by one when it is checked that all are covered.
-_MAX_BRANCHES = 100_000
 
 
 def check(verdict: Verdict) -> list[str]:
@@ -67,7 +64,7 @@ def _check_finding(
         problem = _check_weights(weights, contacts, reference, length, friction, edges, spans=claim in _CLOSURES)
         if problem:
             return problem
-    return None if covers_all(evidence, contacts) else "some branch has no weights"
+    return None if covers_all([weights.choice for weights in evidence], contacts) else "some branch has no weights"
 
 
 def motion_value(
@@ -156,17 +153,17 @@ def _rows(contact: Contact, normal: Point, mu: float, edges: int, reference: Poi
     return np.hstack([forces, moments / length])
 
 
-def covers_all(evidence: Sequence[Weights], contacts: Sequence[Contact]) -> bool:
-    """Whether every branch contains the choice of some of the weights.
+def covers_all(choices: Sequence[Sequence[tuple[str, int, int]]], contacts: Sequence[Contact]) -> bool:
+    """Whether every branch contains one of the choices.
 
-    Only clauses that some weights choose in matter; their combinations are gone through one by one.
+    Only clauses that some choice names matter; their combinations are gone through one by one.
     """
     counts = {
         (contact.name, index): len(clause) for contact in contacts for index, clause in enumerate(contact.clauses)
     }
-    choices = [{(name, clause): alternative for name, clause, alternative in w.choice} for w in evidence]
-    used = sorted({place for choice in choices for place in choice})
-    return _covered(choices, used, counts, {})
+    taken = [{(name, clause): alternative for name, clause, alternative in choice} for choice in choices]
+    used = sorted({place for choice in taken for place in choice})
+    return _covered(taken, used, counts, {})
 
 
 def _covered(
@@ -187,24 +184,41 @@ def _covered(
 def _check_rank(
     answer: Answer | None, evidence: Singular, contacts: Sequence[Contact], reference: Point, length: float
 ) -> str | None:
-    """'No' needs one branch and a motion orthogonal to all its rows; 'yes' the rank of every branch."""
-    dimension = contacts[0].dimension
-    clauses = [
-        [_rows(c, normal, 0.0, 0, reference, length) for normal in clause] for c in contacts for clause in c.clauses
-    ]
+    """'No' needs a motion that some branch does not notice; 'yes' choices of full rank that cover all branches."""
+    rows = {
+        (contact.name, index, alternative): _rows(contact, normal, 0.0, 0, reference, length)
+        for contact in contacts
+        for index, clause in enumerate(contact.clauses)
+        for alternative, normal in enumerate(clause)
+    }
     if answer is Answer.NO:
-        if evidence.motion is None:
-            return "no motion"
-        plane = len(reference)
-        scaled = np.concatenate([_velocity(evidence.motion, reference), evidence.motion[plane:] * length])
-        scaled = scaled / np.linalg.norm(scaled)
-        worst = max(min(abs(float((row @ scaled)[0])) for row in rows) for rows in clauses)
-        return None if worst <= WITNESS else f"the motion is noticed: {worst:.1e}"
-    if evidence.rank != dimension:
-        return f"rank {evidence.rank} is not {dimension}"
-    if np.prod([len(rows) for rows in clauses], dtype=float) > _MAX_BRANCHES:
-        return f"more than {_MAX_BRANCHES} branches to check"
-    for branch in product(*clauses):
-        if np.linalg.matrix_rank(np.vstack(branch), tol=WITNESS) < dimension:
-            return "some branch has less than full rank"
-    return None
+        return _check_unnoticed(evidence, rows, reference, length)
+    if evidence.rank != contacts[0].dimension:
+        return f"rank {evidence.rank} is not {contacts[0].dimension}"
+    always = [
+        rows[contact.name, index, 0]
+        for contact in contacts
+        for index, clause in enumerate(contact.clauses)
+        if len(clause) == 1
+    ]
+    for choice in evidence.choices:
+        matrix = np.vstack([*always, *(rows[taken] for taken in choice)])
+        if np.linalg.matrix_rank(matrix, tol=WITNESS) < evidence.rank:
+            return "some choice has less than full rank"
+    return None if covers_all(evidence.choices, contacts) else "some branch has no choice of full rank"
+
+
+def _check_unnoticed(
+    evidence: Singular, rows: Mapping[tuple[str, int, int], Rows], reference: Point, length: float
+) -> str | None:
+    """The motion must be orthogonal to some alternative of every clause."""
+    if evidence.motion is None:
+        return "no motion"
+    plane = len(reference)
+    scaled = np.concatenate([_velocity(evidence.motion, reference), evidence.motion[plane:] * length])
+    scaled = scaled / np.linalg.norm(scaled)
+    noticed: dict[tuple[str, int], float] = {}
+    for (name, index, _), row in rows.items():
+        noticed[name, index] = min(noticed.get((name, index), np.inf), float(np.abs(row @ scaled).max()))
+    worst = max(noticed.values())
+    return None if worst <= WITNESS else f"the motion is noticed: {worst:.1e}"

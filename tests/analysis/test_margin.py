@@ -1,11 +1,13 @@
 """Margins against brute force: s is the smallest value of max_i d_i . u on the unit sphere."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 from fixture_design.analysis.bounds import bounds_of, closure_bound
 from fixture_design.analysis.hull import nearest_facet
-from fixture_design.analysis.margin import branch_margin, closure_margin
+from fixture_design.analysis.margin import closure_margin, open_margin
 from fixture_design.cones.kernel import tucker_partition
 from fixture_design.contacts import Contact, Scale, constraints_of
 from fixture_design.tolerances import DEFAULT
@@ -41,9 +43,9 @@ def test_margin_of_closed_rows(dimension: int, count: int, seed: int) -> None:
 def test_margin_of_open_rows_is_the_distance_of_the_hull(seed: int) -> None:
     rng = np.random.default_rng(seed)
     rows = unit(np.column_stack([rng.normal(size=(8, 5)), np.full(8, 1.5)]))
-    margin = branch_margin(rows)
+    margin, exact = open_margin(rows)
     sampled = np.max(rows @ unit(rng.normal(size=(20_000, 6))).T, axis=0).min()
-    assert margin is not None
+    assert exact
     assert margin < 0
     assert margin <= sampled + 1e-12
 
@@ -61,6 +63,27 @@ def test_bounds_enclose_the_margin(seed: int) -> None:
     # errors of the normals lower what is proved by at most their size
     wide = bounds_of(rows, np.full(len(rows), 1e-3), DEFAULT)
     assert wide.lower <= bounds.lower - 1e-3 + 1e-12
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_margin_of_many_branches_is_the_smallest_one(seed: int) -> None:
+    """Best first finds what trying all branches finds."""
+    rng = np.random.default_rng(seed)
+    contacts = []
+    for i in range(7):
+        out = unit(rng.normal(size=(1, 2)))[0]
+        alternatives = [(out + 0.5 * rng.normal(size=2)).tolist() for _ in range(1 + i % 3)]
+        contacts.append(Contact.of(f"C{i}", "locator", out, [alternatives]))
+    scale = Scale(np.zeros(2), 1.0)
+    every = [
+        closure_margin(
+            constraints_of(
+                [Contact.on_facet(c.name, "locator", c.point, n) for c, n in zip(contacts, normals, strict=True)], scale
+            )
+        )
+        for normals in product(*(contact.normals for contact in contacts))
+    ]
+    assert closure_margin(constraints_of(contacts, scale)) == pytest.approx(min(m for m in every if m is not None))
 
 
 def test_margin_of_a_union_is_that_of_its_worst_branch() -> None:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from itertools import permutations
+from itertools import pairwise, permutations
 from pathlib import Path
 
 import pytest
@@ -64,7 +64,7 @@ def test_several_layouts(command: Callable, tmp_path: Path, names: tuple[str, ..
 
 def test_order_of_severity() -> None:
     severity = [ExitCode.INTERNAL_ERROR, ExitCode.BAD_INPUT, ExitCode.FAILS, ExitCode.UNDECIDED, ExitCode.HOLDS]
-    for more, less in zip(severity, severity[1:], strict=False):
+    for more, less in pairwise(severity):
         assert all(worst(codes) is more for codes in permutations((more, less)))
     assert worst([]) is ExitCode.HOLDS
 
@@ -113,8 +113,8 @@ def test_a_fault_of_ours(command: Callable, tmp_path: Path) -> None:
     ran = command("verify", path)
     assert (ran.code, ran.out) == (4, "")
     last = ran.err.splitlines()[-1]
-    assert last == (f"fixture-design: {path}: internal error (RuntimeError: a pivot was lost); this is a fault of ours")
-    assert "Traceback" in ran.err  # which we need, to find it
+    assert last == (f"fixture-design: {path}: internal error (RuntimeError); this is a fault of ours")
+    assert "RuntimeError: a pivot was lost" in ran.err  # the traceback which we need, to find it
 
 
 @pytest.mark.usefixtures("broken")
@@ -135,7 +135,7 @@ def test_an_error_outside_of_any_layout(command: Callable, tmp_path: Path, monke
     monkeypatch.setattr("fixture_design.cli.verify.dumps", dumps)
     ran = command("verify", "--json", written(tmp_path, "x", HOLDS))
     assert (ran.code, ran.out) == (4, "")
-    assert ran.err.endswith("internal error (ZeroDivisionError: in the writer); this is a fault of ours\n")
+    assert ran.err.endswith("internal error (ZeroDivisionError); this is a fault of ours\n")
 
 
 def test_interrupted(command: Callable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

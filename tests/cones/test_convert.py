@@ -124,3 +124,14 @@ def test_known_cones():
     assert same_linear_span(line.lines, [[0, 1]])
     cube_corner = convert(PolyhedralConvexCone.from_span([[1, 1, 1], [1, -1, 1], [-1, 1, 1], [-1, -1, 1]]))
     assert same_rays(cube_corner.faces, [[1, 0, -1], [-1, 0, -1], [0, 1, -1], [0, -1, -1]])
+
+
+@pytest.mark.parametrize(("slope", "certain"), [(0.0, True), (1e-12, True), (1e-9, False), (3e-9, False), (1e-6, True)])
+def test_values_in_the_undecided_band_are_said(slope: float, certain: bool) -> None:
+    """Two faces that are opposed but for ``slope``: a plane of lines, a wedge, or not to be told apart."""
+    rows = np.array([[1.0, 0.0, 0.0], [-1.0, -slope, 0.0]])
+    found = convert_rows(rows, np.zeros((0, 3)))
+    assert found.certain is certain
+    if certain:
+        assert len(found.lines) == (2 if slope < 1e-9 else 1)
+    assert convert(PolyhedralConvexCone.from_faces(rows)).certain is certain

@@ -71,10 +71,10 @@ def verdict(evidence: Evidence | None, **finding: Any) -> Verdict:
                 ]
             },
         ),
-        (Singular(3, None, (), 0.0), {"rank": 3}),
+        (Singular(3, None, ((),), 0.0), {"rank": 3}),
         (
-            Singular(2, np.array([0.0, 0.0, 1.0]), (("L1", 0, 0),), 0.0),
-            {"rank": 2, "motion": [0.0, 0.0, 1.0], "choice": [["L1", 0, 0]]},
+            Singular(2, np.array([0.0, 0.0, 1.0]), ((("L1", 0, 0),),), 0.0),
+            {"rank": 2, "motion": [0.0, 0.0, 1.0], "choices": [[["L1", 0, 0]]]},
         ),
     ],
 )
@@ -92,7 +92,7 @@ def test_the_whole_object() -> None:
     finding = {"verdict": "yes", "margin": 0.25, "witness": {"rank": 3}, "residual": 1e-17, "edges": 8, "reason": "why"}
     unset = {"admissible_displacements": None, "admissible_forces": None, "bidirectional": []}
     sets = {"admissible_displacements": {"cones": [cone]}, "admissible_forces": cone, "bidirectional": ["L1"]}
-    assert verdict_to_dict(verdict(Singular(3, None, (), 0.0), edges=8, reason="why")) == {
+    assert verdict_to_dict(verdict(Singular(3, None, ((),), 0.0), edges=8, reason="why")) == {
         "schema": "fixture_design/verdict/1",
         "name": "x",
         "source": "x.yaml",

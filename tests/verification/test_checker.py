@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, Finding, Layout, Motion, Singular, Verdict, Weights
 from fixture_design.verification import check, verify
 from tests.problems import figure_8
@@ -90,13 +91,24 @@ def test_weights_of_an_open_layout_do_not_prove_closure() -> None:
 def test_no_evidence_and_wrong_rank() -> None:
     verdict = verdict_of(OPEN)
     assert check(forged(verdict, "form_closure", Finding(Answer.YES, 0.1))) != []
-    assert check(forged(verdict, "deterministic", Finding(Answer.YES, 0.1, Singular(2, None, (), 0.0)))) != []
+    assert check(forged(verdict, "deterministic", Finding(Answer.YES, 0.1, Singular(2, None, ((),), 0.0)))) != []
     noticed = Singular(2, np.array([0.0, 1.0, 0.0]), (), 0.0)
     assert check(forged(verdict, "deterministic", Finding(Answer.NO, 0.0, noticed))) != []
 
 
 def test_rank_deficiency_is_found_by_the_checker_too() -> None:
     verdict = verdict_of(("P3", "P4"))
-    claimed = Finding(Answer.YES, 0.1, Singular(3, None, (), 0.0), 0.0)
+    claimed = Finding(Answer.YES, 0.1, Singular(3, None, ((),), 0.0), 0.0)
     assert check(verdict) == []
     assert check(forged(verdict, "deterministic", claimed)) != []
+
+
+def test_full_rank_of_some_branches_is_not_that_of_all() -> None:
+    """Three apices: the rank must be proved for every alternative that matters."""
+    apices = [Contact.of(f"A{i}", "locator", [i, i**2], [[[1, i], [i, -1 - i]]]) for i in range(3)]
+    verdict = verify(Layout("apices", "planar", contacts=tuple(apices)))
+    finding = verdict.groups["all"].findings["deterministic"]
+    assert check(verdict) == []
+    if isinstance(finding.evidence, Singular) and finding.answer is Answer.YES:
+        partly = replace(finding.evidence, choices=finding.evidence.choices[1:])
+        assert "choice" in check(forged(verdict, "deterministic", replace(finding, evidence=partly)))[0]

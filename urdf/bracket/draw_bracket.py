@@ -37,7 +37,8 @@ def main() -> None:
         return np.column_stack([WIDTH * 0.44 + SCALE * moved @ right, HEIGHT * 0.46 - SCALE * moved @ up])
 
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="14">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}"',
+        'font-family="sans-serif" font-size="14">',
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>',
         *_surface(part, view, flat),
     ]
@@ -103,7 +104,8 @@ def _legend(verdict):
     x, y = WIDTH - 250, 36
     yield f'<text x="{x}" y="{y}" font-weight="bold">{verdict.name}</text>'
     for index, (text, answer) in enumerate(rows, start=1):
-        yield f'<text x="{x}" y="{y + 22 * index}" fill="#333">{text}: <tspan font-weight="bold">{answer}</tspan></text>'
+        bold = f'<tspan font-weight="bold">{answer}</tspan>'
+        yield f'<text x="{x}" y="{y + 22 * index}" fill="#333">{text}: {bold}</text>'
     y += 22 * (len(rows) + 1) + 6
     for index, (role, colour) in enumerate(COLOURS.items()):
         yield f'<rect x="{x}" y="{y + 22 * index - 11}" width="14" height="14" fill="{colour}"/>'
