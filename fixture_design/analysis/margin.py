@@ -21,7 +21,7 @@ from fixture_design.contacts import Constraints
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: Choices looked at before a union's margin is given up.
-MAX_CHOICES = 512
+MAX_CHOICES = 256
 #: Work of facets, in numbers of rows to the power d / 2, before a margin is given up: about a second.
 MAX_WORK = 2.0e7
 

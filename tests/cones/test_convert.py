@@ -1,6 +1,7 @@
 """CONVERT: both forms describe one set, and it is the set that exact arithmetic and the thesis's algorithm find."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
