@@ -51,7 +51,7 @@ def _options(
 def main() -> None:
     """Run the command line; every exception becomes one message and an exit code."""
     try:
-        code = app(standalone_mode=False)
+        code = app(prog_name="fixture-design", standalone_mode=False)
     except InputError as error:
         say(str(error))
         code = ExitCode.BAD_INPUT
