@@ -38,6 +38,7 @@ from fixture_design.layout import (
     groups_of,
 )
 from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.verification.checker import sum_up
 from fixture_design.version import VERSION
 
 #: The questions this version answers about every group, in the order they are reported.
@@ -74,7 +75,7 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
         name=layout.name,
         source=None if layout.source is None else str(layout.source),
         space=layout.space,
-        satisfied=_satisfied(requirements),
+        satisfied=sum_up([requirement.answer for requirement in requirements]),
         groups=verdicts,
         contacts=found.contacts,
         requirements=requirements,
@@ -181,12 +182,3 @@ def _requirement_verdicts(
                 notes.append(f"{group.name}: {require} is not evaluated by version {VERSION}: undecided")
                 found.append(RequirementVerdict(group.name, require, Answer.UNDECIDED))
     return found
-
-
-def _satisfied(requirements: Sequence[RequirementVerdict]) -> Answer | None:
-    answers = [requirement.answer for requirement in requirements]
-    if not answers:
-        return None
-    if any(answer in (Answer.NO, None) for answer in answers):
-        return Answer.NO
-    return Answer.UNDECIDED if Answer.UNDECIDED in answers else Answer.YES

@@ -27,7 +27,7 @@ import jaxtyping, numpy, rich.console, rich.table, typer, yaml
 from pydantic import BaseModel, TypeAdapter
 """
 RUNS = 7
-#: Measured: 1.5 to 1.6. One more package of the weight of scipy.optimize or trimesh (ratio above 2.5) does not pass.
+#: Measured: 1.4 to 1.5. One more package of the weight of scipy.optimize or trimesh (ratio above 2.5) does not pass.
 BOUND = 2.0
 
 
