@@ -6,43 +6,77 @@ Cones are converted in scaled coordinates and mapped back, so that offsets and u
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from fixture_design.analysis.restraint import Restraint
 from fixture_design.arrays import Rows
-from fixture_design.cones import ConeUnion, PolyhedralConvexCone, bidirectional, convert, convert_both, union_dual
+from fixture_design.cones import (
+    ConeUnion,
+    PolyhedralConvexCone,
+    bidirectional,
+    convert,
+    convert_both,
+    convert_rows,
+    dual,
+)
 from fixture_design.contacts import Scale, motion_about_origin
-from fixture_design.tolerances import DEFAULT
+from fixture_design.errors import ConeError
+from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: Unions of more cones than this are not listed.
 MAX_CONES = 64
+#: Cones with more span vectors than this are not listed.
+MAX_LISTED = 2000
+#: Span vectors of a union beyond which the convex sum is not converted.
+MAX_SUM = 600
 
 
-def admissible_displacements(restraint: Restraint) -> ConeUnion | None:
+def admissible_displacements(restraint: Restraint) -> ConeUnion:
     """A as the union of one cone a branch, with both forms, in the restraint's scaled coordinates.
 
-    Returns:
-        None if there are more than MAX_CONES branches; `form_closure` and its kin need no list.
-
     Raises:
-        ConeError: a cone has too many span vectors.
+        ConeError: more than MAX_CONES branches, or a cone with more than MAX_LISTED span vectors. `form_closure` and
+            its kin need no list.
     """
     constraints = restraint.constraints
     if constraints.branch_count > MAX_CONES:
-        return None
+        raise ConeError(f"the union has {constraints.branch_count} cones, more than {MAX_CONES}")
     alternatives = [constraints.alternatives_of(clause).tolist() for clause in range(len(constraints.contact))]
-    dimension = constraints.rows.shape[1]
-    branches = (constraints.rows[constraints.rows_of(choice)] for choice in product(*alternatives))
+    tolerances = restraint.tolerances.at_offset(constraints.scale.offset)
     return ConeUnion.of(
-        convert(PolyhedralConvexCone.from_faces(rows, dimension=dimension), restraint.tolerances) for rows in branches
+        _listed(constraints.rows[constraints.rows_of(choice)], tolerances) for choice in product(*alternatives)
     )
 
 
-def admissible_forces(displacements: ConeUnion) -> PolyhedralConvexCone:
-    """F, the polar of the union (Table 3), both forms irreducible: loads that frictionless contacts can balance."""
-    return convert_both(union_dual(displacements))
+def _listed(rows: Rows, tolerances: Tolerances) -> PolyhedralConvexCone:
+    """face{rows} with its span form, and the rows as they are for its face form."""
+    dimension = rows.shape[1]
+    found = convert_rows(rows, np.zeros((0, dimension)), tolerances, MAX_LISTED)
+    spans = PolyhedralConvexCone.from_span(found.vectors, found.lines, dimension=dimension).span_form
+    cone = PolyhedralConvexCone.from_faces(rows, dimension=dimension)
+    return replace(cone, span_form=spans, certain=found.certain)
+
+
+def admissible_forces(displacements: ConeUnion, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
+    """F, the polar of the union (Table 3), both forms irreducible: loads that frictionless contacts can balance.
+
+    The span vectors of all A_n together span the convex sum (2-34), whose polar F is (2-58). A single A is its own sum:
+    F is spanned by its face vectors.
+
+    Raises:
+        ConeError: a union with more than MAX_SUM span vectors.
+    """
+    if len(displacements) == 1:
+        return dual(convert_both(displacements.cones[0], tolerances))
+    known = [convert(cone, tolerances) for cone in displacements]
+    spans, lines = np.vstack([cone.spans for cone in known]), np.vstack([cone.lines for cone in known])
+    if len(spans) > MAX_SUM:
+        raise ConeError(f"the union has {len(spans)} span vectors, more than {MAX_SUM}")
+    total = PolyhedralConvexCone.from_span(spans, lines, dimension=displacements.dimension)
+    return dual(convert_both(replace(total, certain=all(cone.certain for cone in known)), tolerances))
 
 
 def bidirectional_contacts(restraint: Restraint) -> tuple[str, ...]:
@@ -51,8 +85,9 @@ def bidirectional_contacts(restraint: Restraint) -> tuple[str, ...]:
     single = [int(a[0]) for c in range(len(constraints.contact)) if len(a := constraints.alternatives_of(c)) == 1]
     rows = constraints.rows_of(single)
     cone = PolyhedralConvexCone.from_faces(constraints.rows[rows], dimension=constraints.rows.shape[1])
+    tolerances = restraint.tolerances.at_offset(constraints.scale.offset)
     owners = constraints.contact[constraints.clause[constraints.alternative[rows]]]
-    names = {restraint.contacts[owner].name for owner in owners[bidirectional(cone, restraint.tolerances)]}
+    names = {restraint.contacts[owner].name for owner in owners[bidirectional(cone, tolerances)]}
     return tuple(contact.name for contact in restraint.contacts if contact.name in names)
 
 

@@ -11,7 +11,8 @@ s moves by at most as much as the rows do, so deciding on it is as safe as the r
                                       s >= (sigma_min(diag(w) D) - |D^T w|) / (1 + |w|).
 
 The last one: with h = max_i d_i . u, sum_i w_i (h - d_i . u) <= h + |D^T w| bounds the 1-norm, hence the 2-norm of
-diag(w)(h 1 - D u), so sigma_min <= |diag(w) D u| <= |h| |w| + h + |D^T w|. Where it is too weak to decide, the facets
+diag(w)(h 1 - D u), so sigma_min <= |diag(w) D u| <= |h| |w| + h + |D^T w|; h < 0 would make that less than |D^T w|,
+since h >= -|D^T w| and |w| <= 1, so a larger sigma_min proves the bound. Where it is too weak to decide, the facets
 of the rows' convex hull give s itself. Errors of normals widen both bounds by as much as they move the rows.
 """
 
@@ -21,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.analysis.hull import ROUNDING, SAFE, nearest_facet
+from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Rows, Vector, Weights
 from fixture_design.cones.kernel import TuckerPartition, tucker_partition
 from fixture_design.tolerances import Tolerances
@@ -88,17 +89,21 @@ def _bounds_from(partition: TuckerPartition, rows: Rows, errors: Weights) -> Bou
 
 
 def closure_bound(rows: Rows, weights: Weights) -> float:
-    """(sigma_min(diag(w) D) - |D^T w|) / (1 + |w|): a lower bound on s for weights w >= 0 of sum 1."""
+    """A lower bound on s for weights w >= 0 of sum 1.
+
+    (sigma_min(diag(w) D) - |D^T w|) / (1 + |w|) where that is positive, else -|D^T w|: the first bound's proof needs
+    s >= 0, which it has where sigma_min is the larger one.
+    """
+    residual = float(np.linalg.norm(weights @ rows))
     if len(rows) < rows.shape[1]:
-        return -float(np.linalg.norm(weights @ rows))
-    smallest = np.linalg.svd(weights[:, None] * rows, compute_uv=False)[-1]
-    return float((smallest - np.linalg.norm(weights @ rows)) / (1 + np.linalg.norm(weights)))
+        return -residual
+    smallest = float(np.linalg.svd(weights[:, None] * rows, compute_uv=False)[-1])
+    return (smallest - residual) / (1 + float(np.linalg.norm(weights))) if smallest > residual else -residual
 
 
 def _hull_bounds(rows: Rows, errors: Weights, weights: Weights) -> Bounds:
     found = nearest_facet(rows)
     if found is None:
         return Bounds(-np.inf, np.inf, None, None)
-    margin, motion = found
-    upper = float(np.max(rows @ motion + errors))
-    return Bounds(SAFE * margin - ROUNDING - float(errors.max()), upper, motion, weights)
+    upper = float(np.max(rows @ found.motion + errors))
+    return Bounds(found.at_least - float(errors.max()), upper, found.motion, weights)

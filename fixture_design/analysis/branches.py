@@ -19,7 +19,9 @@ from fixture_design.contacts import Constraints
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: Nodes looked at before a union is given up as undecided.
-MAX_NODES = 4000
+MAX_NODES = 3000
+#: Nodes still looked at after the first branch that stayed undecided.
+NODES_AFTER_DOUBT = 100
 
 #: Alternatives chosen so far, one for each clause that is settled.
 Choice = tuple[int, ...]
@@ -64,7 +66,6 @@ class UnionQuestions:
         self._rows_by_alternative = _split(constraints.alternative, len(constraints.clause))
         self._alternatives_by_clause = _split(constraints.clause, clauses)
         self._single = tuple(int(a[0]) for a in self._alternatives_by_clause if len(a) == 1)
-        self._nodes = 0
 
     def closed(self) -> Settled:
         """Whether every A_n is {o} (2-48), or a motion of A."""
@@ -89,42 +90,32 @@ class UnionQuestions:
         return float(self._clause_values(motion).max(initial=-np.inf))
 
     def _search(self, proves: Callable[[Bounds], bool], admits: Callable[[float], bool], found: bool) -> Settled:
-        self._nodes = 0
         leaves: list[Leaf] = []
-        reasons: list[str] = []
-
-        def visit(choice: Choice) -> Settled | None:
-            self._nodes += 1
-            if self._nodes > MAX_NODES:
-                reasons.append(f"the union has {self.constraints.branch_count} cones; gave up after {MAX_NODES} nodes")
-                return None
+        reason: str | None = None
+        waiting: list[Choice] = [self._single]
+        budget = MAX_NODES
+        while waiting:
+            if budget == 0:
+                size = self.constraints.branch_count
+                return Settled(None, reason=reason or f"the union has {size} cones; gave up after {MAX_NODES} choices")
+            budget -= 1
+            choice = waiting.pop()
             rows = self._rows_of(choice)
             bounds = bounds_of(self.rows[rows], self.errors[rows], self.tolerances)
             if bounds.weights is not None and proves(bounds):
                 leaves.append(Leaf(choice, self._all_rows(rows, bounds.weights)))
-                return None
+                continue
             clause = self._next_clause(choice, bounds.motion, admits)
             if clause is None and bounds.motion is not None and admits(self.value(bounds.motion)):
                 return Settled(found, motion=bounds.motion)
             if clause is None:
                 clause = self._any_clause(choice)
             if clause is None:
-                reasons.append(_why_undecided(bounds, self.tolerances))
-                return None
-            for alternative in self._alternatives_by_clause[clause]:
-                if self._nodes > MAX_NODES:
-                    return None
-                settled = visit((*choice, int(alternative)))
-                if settled is not None:
-                    return settled
-            return None
-
-        settled = visit(self._single)
-        if settled is not None:
-            return settled
-        if reasons:
-            return Settled(None, reason=reasons[0])
-        return Settled(not found, leaves=tuple(leaves))
+                # one motion elsewhere may still settle the union, but it is no longer worth a long search
+                reason, budget = reason or _why_undecided(bounds, self.tolerances), min(budget, NODES_AFTER_DOUBT)
+                continue
+            waiting += [(*choice, int(alternative)) for alternative in reversed(self._alternatives_by_clause[clause])]
+        return Settled(None, reason=reason) if reason else Settled(not found, leaves=tuple(leaves))
 
     def _next_clause(self, choice: Choice, motion: Vector | None, admits: Callable[[float], bool]) -> int | None:
         """The clause not chosen yet that the motion violates most; None if it violates none."""

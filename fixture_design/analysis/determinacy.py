@@ -1,14 +1,13 @@
 """Deterministic locating (H. Asada, A. By, 1985): the locators' distances fix the part's position to first order.
 
 That is so if and only if no motion leaves every contact's distance unchanged: the face vectors have full rank, in every
-branch where there are alternatives. A clause with an alternative in the span of the rows chosen so far cannot add to
-the rank, so that alternative is taken without looking at the others; every branching then raises the rank, and the
-search is polynomial in the number of contacts.
+branch where there are alternatives. Where a clause has an alternative in the span of the rows chosen so far, that one
+leads to a deficient branch if any does, so the clause is not branched on; every branching raises the rank, and the
+search is at most d deep.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice, product
@@ -21,6 +20,8 @@ from fixture_design.contacts import Constraints, motion_scaled
 from fixture_design.layout import Answer, Finding, Singular
 from fixture_design.tolerances import Tolerances
 
+#: Choices looked at before the rank is given up as undecided.
+MAX_NODES = 3000
 #: Branches whose singular values are looked at for the margin.
 MAX_BRANCHES = 1024
 
@@ -41,7 +42,7 @@ def deterministic(restraint: Restraint) -> Finding:
         constraints.errors / lengths,
         restraint.tolerances.at_offset(constraints.scale.offset),
     )
-    outcome = search.visit([options[0] for options in search.alternatives if len(options) == 1], ())
+    outcome = search.visit()
     margin = determinacy_margin(restraint.reported)
     dimension = constraints.rows.shape[1]
     if isinstance(outcome, _FullRank):
@@ -49,6 +50,8 @@ def deterministic(restraint: Restraint) -> Finding:
         return Finding(Answer.YES, margin, Singular(dimension, None, choices, 0.0), 0.0)
     if outcome.motion is None:
         reason = f"the smallest singular value is {outcome.value:.1e}, neither zero nor clear of it"
+        if search.nodes >= MAX_NODES:
+            reason = f"the union has {constraints.branch_count} cones; gave up after {MAX_NODES} choices"
         return Finding(Answer.UNDECIDED, margin, reason=reason)
     motion = motion_in_world(outcome.motion, constraints.scale)
     scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)
@@ -90,7 +93,7 @@ class _Deficient:
     motion: Vector | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _RankSearch:
     """Looks for a branch whose unit rows have less than full rank."""
 
@@ -98,59 +101,66 @@ class _RankSearch:
     rows: Rows
     errors: Weights
     tolerances: Tolerances
+    nodes: int = 0
 
     @cached_property
     def alternatives(self) -> list[list[int]]:
         return [self.constraints.alternatives_of(c).tolist() for c in range(len(self.constraints.contact))]
 
-    def visit(self, choice: Sequence[int], branched: tuple[int, ...]) -> _FullRank | _Deficient:
+    @cached_property
+    def forced(self) -> tuple[int, ...]:
+        return tuple(options[0] for options in self.alternatives if len(options) == 1)
+
+    def visit(self, branched: tuple[int, ...] = ()) -> _FullRank | _Deficient:
         """The first deficient branch that contains the choice, a doubtful one if there is none, or full rank.
 
-        ``branched`` are the chosen alternatives whose siblings are looked at too; the others are in the span of the
-        choice, add nothing to the rank, and are not needed for a proof of full rank.
+        ``branched`` are the alternatives chosen so far. Full rank is asked of their rows (and those of clauses without
+        alternatives) alone; alternatives in their span are then taken for the sake of a deficient branch.
         """
-        rows = self.constraints.rows_of(choice)
+        self.nodes += 1
+        rows = self.constraints.rows_of((*self.forced, *branched))
         values, right = _singular(self.rows[rows])
         error = float(np.linalg.norm(self.errors[rows]))
         if values[-1] > self.tolerances.near + error:
             return _FullRank((branched,))
         unnoticed = right[values <= self.tolerances.near + error]
-        clause, options = self._next(choice, unnoticed)
+        spanned, clause, options = self._next(branched, unnoticed)
         if clause is None:
-            certain = values[-1] <= self.tolerances.zero and not np.any(self.errors[rows])
-            rank = int(np.sum(values > self.tolerances.tie))
-            return _Deficient(tuple(choice), rank, float(values[-1]), right[-1] if certain else None)
-        return self._visit_all(choice, branched, clause, options)
-
-    def _visit_all(
-        self, choice: Sequence[int], branched: tuple[int, ...], clause: int, options: list[int]
-    ) -> _FullRank | _Deficient:
+            return self._deficient((*self.forced, *branched, *spanned))
         doubtful, leaves = None, []
         for alternative in options:
-            in_all = len(options) < len(self.alternatives[clause])
-            found = self.visit([*choice, alternative], branched if in_all else (*branched, alternative))
+            if self.nodes >= MAX_NODES:
+                return doubtful or _Deficient(branched, 0, float(values[-1]), None)
+            found = self.visit((*branched, alternative))
+            if isinstance(found, _Deficient) and found.motion is not None:
+                return found
             if isinstance(found, _FullRank):
                 leaves += found.leaves
-            elif found.motion is not None:
-                return found
             else:
                 doubtful = doubtful or found
         return doubtful or _FullRank(tuple(leaves))
 
-    def _next(self, choice: Sequence[int], unnoticed: Rows) -> tuple[int | None, list[int]]:
-        """The next clause and the alternatives of it to try, those that add least to the rank first."""
-        settled = set(self.constraints.clause[list(choice)].tolist())
+    def _deficient(self, choice: tuple[int, ...]) -> _Deficient:
+        rows = self.constraints.rows_of(choice)
+        values, right = _singular(self.rows[rows])
+        certain = values[-1] <= self.tolerances.zero and not np.any(self.errors[rows])
+        rank = int(np.sum(values > self.tolerances.tie))
+        return _Deficient(choice, rank, float(values[-1]), right[-1] if certain else None)
+
+    def _next(self, branched: tuple[int, ...], unnoticed: Rows) -> tuple[list[int], int | None, list[int]]:
+        """Alternatives in the span, one a clause; then the clause that adds least, and its alternatives in order."""
+        settled = set(self.constraints.clause[list(branched)].tolist())
+        spanned: list[int] = []
         best: tuple[float, int, list[int]] | None = None
         for clause, options in enumerate(self.alternatives):
-            if clause in settled:
+            if clause in settled or len(options) == 1:
                 continue
             adds = np.linalg.norm(self.rows[self.constraints.rows_of(options)] @ unnoticed.T, axis=1)
-            order = [options[i] for i in np.argsort(adds)]
-            if adds.min() <= self.tolerances.zero and not np.any(self.errors):
-                return clause, order[:1]
-            if best is None or adds.min() < best[0]:
-                best = (float(adds.min()), clause, order)
-        return (None, []) if best is None else best[1:]
+            if adds.min() <= self.tolerances.zero:
+                spanned.append(options[int(np.argmin(adds))])
+            elif best is None or adds.min() < best[0]:
+                best = (float(adds.min()), clause, [options[i] for i in np.argsort(adds)])
+        return (spanned, None, []) if best is None else (spanned, *best[1:])
 
 
 def _singular(rows: Rows) -> tuple[np.ndarray, Rows]:

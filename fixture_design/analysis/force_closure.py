@@ -12,6 +12,8 @@ Yes says that a balance exists for every load (the contacts *can* hold), not tha
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fixture_design.analysis.branches import Settled, UnionQuestions
@@ -30,51 +32,58 @@ def force_closure(restraint: Restraint) -> Finding:
 
     Returns:
         yes with weights on friction edges (``edges`` of them a contact in space); no with a motion against which no
-        contact force does work; undecided with a reason. The margin is s of the inner pyramid with 8 edges.
+        contact force does work; undecided with a reason. The margin is s of the pyramids that settled it; how many
+        edges they have is stated.
     """
     if not any(contact.friction > 0 for contact in restraint.contacts):
         settled = restraint.closed
         return restraint.finding(Answer.of(settled.truth), settled, restraint.margin, full_rank=True)
-    margin = closure_margin(_pyramids(restraint, EDGES[0], reported=True), restraint.tolerances)
     planar = restraint.contacts[0].dimension == 3
-    return _in_the_plane(restraint, margin) if planar else _in_space(restraint, margin)
+    return _in_the_plane(restraint) if planar else _in_space(restraint)
 
 
-def _in_the_plane(restraint: Restraint, margin: float | None) -> Finding:
+def _in_the_plane(restraint: Restraint) -> Finding:
     """Planar friction cones have two edges: one question, exact."""
-    cones = _pyramids(restraint, EDGES[0])
+    cones = _pyramids(restraint, EDGES[0], "inner")
     settled = UnionQuestions(cones, restraint.tolerances).closed()
     if settled.truth:
-        return _holds(restraint, settled, margin, EDGES[0], stated=None)
+        return replace(_holds(restraint, settled, cones, EDGES[0]), edges=None)
     against = _unopposed(restraint, settled, cones)
     if against is None:
-        return Finding(Answer.UNDECIDED, margin, reason=settled.reason)
-    return Finding(Answer.NO, margin, against, against.residual)
+        return Finding(Answer.UNDECIDED, _margin(restraint, EDGES[0], "inner"), reason=settled.reason)
+    return Finding(Answer.NO, _margin(restraint, EDGES[0], "inner"), against, against.residual)
 
 
-def _in_space(restraint: Restraint, margin: float | None) -> Finding:
+def _in_space(restraint: Restraint) -> Finding:
     """Inner and outer pyramids with more and more edges, until they agree."""
     for edges in EDGES:
-        inner, outer = _pyramids(restraint, edges, "inner"), _pyramids(restraint, edges, "outer")
+        inner = _pyramids(restraint, edges, "inner")
         settled = UnionQuestions(inner, restraint.tolerances).closed()
         if settled.truth:
-            return _holds(restraint, settled, margin, edges, stated=edges)
+            return _holds(restraint, settled, inner, edges)
         against = _unopposed(restraint, settled, inner)
-        if against is None:
-            against = _unopposed(restraint, UnionQuestions(outer, restraint.tolerances).closed(), outer)
         if against is not None:
-            return Finding(Answer.NO, margin, against, against.residual)
-    reason = f"inner pyramids of {EDGES[-1]} edges do not close, outer ones do: a tie with the friction cones"
-    return Finding(Answer.UNDECIDED, margin, edges=EDGES[-1], reason=reason)
+            return Finding(Answer.NO, _margin(restraint, edges, "inner"), against, against.residual, edges)
+        outer = _pyramids(restraint, edges, "outer")
+        against = _unopposed(restraint, UnionQuestions(outer, restraint.tolerances).closed(), outer)
+        if against is not None:
+            return Finding(Answer.NO, _margin(restraint, edges, "outer"), against, against.residual, edges)
+    reason = f"pyramids of {EDGES[-1]} edges inside and outside the friction cones do not agree: a tie with the cones"
+    return Finding(Answer.UNDECIDED, edges=EDGES[-1], reason=reason)
 
 
-def _holds(restraint: Restraint, settled: Settled, margin: float | None, edges: int, *, stated: int | None) -> Finding:
-    inner, reported = _pyramids(restraint, edges), _pyramids(restraint, edges, reported=True)
-    evidence = restraint.evidence(settled, inner, reported, full_rank=True)
-    return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges=stated)
+def _holds(restraint: Restraint, settled: Settled, inner: Constraints, edges: int) -> Finding:
+    evidence = restraint.evidence(settled, inner, _pyramids(restraint, edges, "inner", reported=True), full_rank=True)
+    margin = _margin(restraint, edges, "inner")
+    return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges)
 
 
-def _pyramids(restraint: Restraint, edges: int, side: Side = "inner", *, reported: bool = False) -> Constraints:
+def _margin(restraint: Restraint, edges: int, side: Side) -> float | None:
+    """s of the pyramids that settled the question, so that its sign goes with the answer."""
+    return closure_margin(_pyramids(restraint, edges, side, reported=True), restraint.tolerances)
+
+
+def _pyramids(restraint: Restraint, edges: int, side: Side, *, reported: bool = False) -> Constraints:
     scale = restraint.report if reported else None
     return constraints_of(restraint.contacts, scale, with_friction=True, edges=edges, side=side)
 
@@ -83,8 +92,8 @@ def _unopposed(restraint: Restraint, settled: Settled, pyramids: Constraints) ->
     """The motion of a search as evidence, if the friction cones themselves do not oppose it."""
     if settled.motion is None:
         return None
-    questions = UnionQuestions(restraint.constraints, restraint.tolerances)
-    if friction_value(restraint, restraint.constraints, settled.motion) > questions.tolerances.zero:
+    zero = restraint.tolerances.at_offset(restraint.constraints.scale.offset).zero
+    if friction_value(restraint, restraint.constraints, settled.motion) > zero:
         return None
     motion = motion_in_world(settled.motion, pyramids.scale)
     scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)

@@ -35,7 +35,8 @@ class HybridControl:
 
     Attributes:
         displacements: A.  forces: F = A*.
-        position_controlled: orthonormal rows: the subspace in which the part moves freely both ways.
+        position_controlled: orthonormal rows: the largest subspace found in A, in which the part moves freely both
+            ways: the lines of the A_n that has most (a union may hold several; each is a subspace of its own A_n).
         force_controlled: orthonormal rows: the subspace in which contacts push back both ways.
         bidirectional: whether the two subspaces are all of A and F.
     """
@@ -49,13 +50,13 @@ class HybridControl:
 
 def hybrid_control(displacements: ConeUnion, tolerances: Tolerances = DEFAULT) -> HybridControl:
     """Position- and force-controlled sets for an admissible displacement set A."""
-    forces = convert(admissible_forces(displacements), tolerances)
+    forces = admissible_forces(displacements, tolerances)
     sum_of_cones = convert(dual(forces), tolerances)
     cones = [convert(cone, tolerances) for cone in displacements]
     return HybridControl(
         displacements,
         forces,
-        _orthonormal(sum_of_cones.lines, tolerances),
+        _orthonormal(max((cone.lines for cone in cones), key=len), tolerances),
         _orthonormal(forces.lines, tolerances),
         # A is a subspace if it is its own convex sum: no span vectors left over, and one cone that has all the lines
         not len(sum_of_cones.spans) and any(len(cone.lines) == len(sum_of_cones.lines) for cone in cones),
@@ -80,7 +81,10 @@ def commanded_pair(
         DimensionError: wishes that do not fit the sets.
     """
     wish = _vector(displacement, control)
-    moved = min((nearest_in(convert(c), wish) for c in control.displacements), key=lambda x: np.linalg.norm(x - wish))
+    moved = min(
+        (nearest_in(convert(c, tolerances), wish) for c in control.displacements),
+        key=lambda x: np.linalg.norm(x - wish),
+    )
     length = np.linalg.norm(moved)
     spans = control.forces.spans
     if length > 0:

@@ -62,7 +62,9 @@ def closure_margin(constraints: Constraints, tolerances: Tolerances = DEFAULT) -
             found = nearest_facet(rows) if work <= MAX_WORK else None
             if found is None:
                 return None
-            heappush(waiting, _Choice(max(found[0], choice.bound), next(numbers), True, choice.taken, choice.depth))
+            heappush(
+                waiting, _Choice(max(found.distance, choice.bound), next(numbers), True, choice.taken, choice.depth)
+            )
         elif choice.depth == len(several):
             return choice.bound
         else:

@@ -137,7 +137,7 @@ def unit_rows(rows: Rows) -> tuple[Rows, Mask]:
     differ in scale by any factor that a float holds.
     """
     largest = np.max(np.abs(rows), axis=1, initial=0.0)
-    kept = largest > ZERO_ROW * max(1.0, float(largest.max(initial=0.0)))
+    kept = largest > ZERO_ROW * float(largest.max(initial=0.0))
     # two steps, so that neither huge nor tiny rows overflow or underflow in the norm
     scaled = rows[kept] / largest[kept, None]
     return scaled / np.linalg.norm(scaled, axis=1, keepdims=True), kept

@@ -5,13 +5,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Incidence, Rows, read_only
+from fixture_design.arrays import Incidence, Rows, Vector, read_only
 from fixture_design.cones.cone import FaceForm, PolyhedralConvexCone, SpanForm, unit_rows
-from fixture_design.cones.kernel import DoubleDescription, double_description
+from fixture_design.cones.kernel import MAX_RAYS, DoubleDescription, double_description
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 
@@ -64,13 +64,53 @@ def convert(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Pol
 
 
 def convert_both(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
-    """The same cone with both forms as CONVERT makes them: irreducible, lines and equalities complete and apart."""
-    known = convert(cone, tolerances)
-    faces = convert(replace(known, face_form=None), tolerances)
-    return convert(replace(faces, span_form=None), tolerances)
+    """The same cone with both forms irreducible, lines and equalities complete and apart, all vectors of length one.
+
+    The new form is irreducible already; of the old one the incidence tells which vectors are facets (extreme rays) and
+    which are zero on the whole cone, so that no way back has to be computed.
+    """
+    by_faces = cone.face_form is not None
+    rows, both_ways = (cone.faces, cone.equalities) if by_faces else (cone.spans, cone.lines)
+    found = convert_rows(rows, both_ways, tolerances)
+    kept_rows, kept_both_ways = facets_of(rows, found, tolerances)
+    face_form, span_form = FaceForm(kept_rows, kept_both_ways), SpanForm(found.vectors, found.lines)
+    if not by_faces:
+        face_form, span_form = FaceForm(found.vectors, found.lines), SpanForm(kept_rows, kept_both_ways)
+    return PolyhedralConvexCone(cone.dimension, face_form, span_form, cone.certain and found.certain)
 
 
-def convert_rows(rows: Rows, equalities: Rows, tolerances: Tolerances = DEFAULT) -> Conversion:
+def facets_of(rows: Rows, found: Conversion, tolerances: Tolerances = DEFAULT) -> tuple[Rows, Rows]:
+    """The rows that are facets of {x : rows . x <= 0}, by its conversion, and the equalities that the cone lies in.
+
+    A row is a facet if the rays on it span one dimension less than the cone; of rows on the same rays the first stays.
+
+    Returns:
+        facets, unit and orthogonal to the equalities, shape (f, d), and orthonormal equalities, shape (e, d).
+    """
+    generators = np.vstack([found.vectors, found.lines])
+    inside, outside = _span_and_complement(generators, tolerances)
+    facets: dict[bytes, Vector] = {}
+    for row, on in zip(rows, found.incidence.T, strict=True):
+        if on.all() or on.tobytes() in facets:
+            continue
+        around, _ = _span_and_complement(np.vstack([found.vectors[on], found.lines]), tolerances)
+        if len(around) == len(inside) - 1:
+            facets[on.tobytes()] = unit_rows(((row @ inside.T) @ inside)[None, :])[0][0]
+    return read_only(np.array(list(facets.values())).reshape(-1, rows.shape[1])), read_only(outside)
+
+
+def _span_and_complement(rows: Rows, tolerances: Tolerances) -> tuple[Rows, Rows]:
+    """Orthonormal bases of the span of unit rows and of its orthogonal complement."""
+    if not len(rows):
+        return np.zeros((0, rows.shape[1])), np.eye(rows.shape[1])
+    _, sizes, right = np.linalg.svd(rows, full_matrices=True)
+    rank = int(np.sum(sizes > tolerances.tie))
+    return right[:rank], right[rank:]
+
+
+def convert_rows(
+    rows: Rows, equalities: Rows, tolerances: Tolerances = DEFAULT, max_rays: int = MAX_RAYS
+) -> Conversion:
     """Extreme rays and lines of {x : rows . x <= 0, equalities . x = 0}.
 
     By Theorem 1 this serves both ways: face vectors give span vectors, span vectors (lines as equalities) give face
@@ -79,13 +119,17 @@ def convert_rows(rows: Rows, equalities: Rows, tolerances: Tolerances = DEFAULT)
 
     Args:
         rows: shape (m, d).  equalities: shape (e, d).  tolerances: relative size of a zero.
+        max_rays: a cone that has more on the way is given up.
+
+    Raises:
+        ConeError: more than ``max_rays`` extreme rays.
     """
     unit, kept = unit_rows(rows)
     unit_equalities, _ = unit_rows(equalities)
-    found = double_description(unit, unit_equalities, tolerances.tie)
+    found = double_description(unit, unit_equalities, tolerances.tie, max_rays)
     if found.is_certain(tolerances.band):
         return _conversion(found, kept, True)
-    others = [double_description(unit, unit_equalities, tolerances.tie * factor) for factor in (0.01, 100.0)]
+    others = [double_description(unit, unit_equalities, tolerances.tie * factor, max_rays) for factor in (0.01, 100.0)]
     certain = [other for other in others if other.is_certain(tolerances.band)]
     if not certain or any(not _same_structure(certain[0], other) for other in certain[1:]):
         return _conversion(found, kept, False)

@@ -108,14 +108,15 @@ def group_verdicts(
     groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances
 ) -> dict[str, GroupVerdict]:
     """The verdict of every group; groups with the same contacts are looked at once."""
-    verdicts: dict[str, GroupVerdict] = {}
-    known: dict[tuple[str, ...], GroupVerdict] = {}
+    sharing: dict[tuple[str, ...], list[Group]] = {}
     for group in groups:
-        names = tuple(contact.name for contact in group.contacts)
-        if names not in known:
-            known[names] = group_verdict(group, report, notes, tolerances)
-        verdicts[group.name] = replace(known[names], name=group.name)
-    return verdicts
+        sharing.setdefault(tuple(contact.name for contact in group.contacts), []).append(group)
+    verdicts: dict[str, GroupVerdict] = {}
+    for alike in sharing.values():
+        names = [group.name for group in alike]
+        found = group_verdict(replace(alike[0], name=" and ".join(names)), report, notes, tolerances)
+        verdicts |= {name: replace(found, name=name) for name in names}
+    return {group.name: verdicts[group.name] for group in groups}
 
 
 def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tolerances) -> GroupVerdict:
@@ -126,15 +127,14 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
     restraint = Restraint.of(group.contacts, report, tolerances)
     findings = {name: question(restraint) for name, question in QUESTIONS.items()}
     notes += [f"{group.name}: {name} is undecided: {f.reason}" for name, f in findings.items() if f.reason]
-    displacements = forces = None
+    unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
+    if unmeasured:
+        notes.append(f"{group.name}: too many contacts or alternatives for the margin of {', '.join(unmeasured)}")
     try:
         displacements = admissible_displacements(restraint)
-        if displacements is not None:
-            forces = admissible_forces(displacements)
+        forces = admissible_forces(displacements, tolerances)
     except ConeError as error:
         notes.append(f"{group.name}: the admissible sets are not listed: {error}")
-        displacements = None
-    if displacements is None or forces is None:
         return GroupVerdict(group.name, names, findings, bidirectional=bidirectional_contacts(restraint))
     if not (forces.certain and all(cone.certain for cone in displacements)):
         notes.append(f"{group.name}: the admissible sets have values in the undecided band; their form may be another")

@@ -31,7 +31,8 @@ def test_margin_of_closed_rows(dimension: int, count: int, seed: int) -> None:
     rows = closed_rows(rng, dimension, count)
     found = nearest_facet(rows)
     assert found is not None
-    margin, motion = found
+    margin, motion = found.distance, found.motion
+    assert margin * (1 - 1e-6) <= found.at_least <= margin
     assert np.max(rows @ motion) == pytest.approx(margin, abs=1e-12)
     sampled = np.max(rows @ unit(rng.normal(size=(20_000, dimension))).T, axis=0).min()
     assert 0 < margin <= sampled + 1e-12
@@ -57,9 +58,9 @@ def test_bounds_enclose_the_margin(seed: int) -> None:
     exact = nearest_facet(rows)
     assert exact is not None
     bounds = bounds_of(rows, np.zeros(len(rows)), DEFAULT)
-    assert 0 < bounds.lower <= exact[0] + 1e-12
+    assert 0 < bounds.lower <= exact.distance + 1e-12
     assert bounds.weights is not None
-    assert closure_bound(rows, bounds.weights) <= exact[0] + 1e-12
+    assert closure_bound(rows, bounds.weights) <= exact.distance + 1e-12
     # errors of the normals lower what is proved by at most their size
     wide = bounds_of(rows, np.full(len(rows), 1e-3), DEFAULT)
     assert wide.lower <= bounds.lower - 1e-3 + 1e-12

@@ -8,7 +8,7 @@
 They take unit rows and a relative zero, and report the values they decided on. `NAME` says which implementation runs.
 """
 
-from fixture_design.cones.kernel.double_description import DoubleDescription, double_description
+from fixture_design.cones.kernel.double_description import MAX_RAYS, DoubleDescription, double_description
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
 from fixture_design.cones.kernel.nonnegative import nonnegative_least_squares
 from fixture_design.cones.kernel.tucker import TuckerPartition, tucker_partition
@@ -16,6 +16,7 @@ from fixture_design.cones.kernel.tucker import TuckerPartition, tucker_partition
 NAME = "numpy"
 
 __all__ = [
+    "MAX_RAYS",
     "NAME",
     "DoubleDescription",
     "TuckerPartition",

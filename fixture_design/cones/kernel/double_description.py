@@ -98,8 +98,6 @@ class DoubleDescription:
         nonzero_min = min(self.nonzero_min, float(np.abs(heights[~on]).min())) if (~on).any() else self.nonzero_min
         new_rays, new_incidence = self._rays_between(np.flatnonzero(above), np.flatnonzero(below), heights)
         rays = np.vstack([self.rays[~above], new_rays])
-        if len(rays) > MAX_RAYS:
-            raise ConeError(f"the cone has more than {MAX_RAYS} extreme rays after {len(self.rows) + 1} face vectors")
         flags = np.concatenate([on[~above], np.ones(len(new_rays), dtype=bool)])
         return replace(
             self,
@@ -146,7 +144,7 @@ def _orthonormal_rest(lines: Float[np.ndarray, "l d"], direction: Float[np.ndarr
     return complement @ lines
 
 
-def double_description(rows: Rows, equalities: Rows, zero: float) -> DoubleDescription:
+def double_description(rows: Rows, equalities: Rows, zero: float, max_rays: int = MAX_RAYS) -> DoubleDescription:
     """Both forms of {x : rows . x <= 0, equalities . x = 0}.
 
     Rows are taken in the order that cuts most rays first, which keeps the steps small and ends a closed cone early; the
@@ -156,7 +154,7 @@ def double_description(rows: Rows, equalities: Rows, zero: float) -> DoubleDescr
         rows: shape (m, d), unit.  equalities: shape (e, d), unit.  zero: relative size of a zero.
 
     Raises:
-        ConeError: more than MAX_RAYS extreme rays.
+        ConeError: more than ``max_rays`` extreme rays at some step.
     """
     state = DoubleDescription.whole_space(rows.shape[1], zero)
     for equality in equalities:
@@ -180,6 +178,8 @@ def double_description(rows: Rows, equalities: Rows, zero: float) -> DoubleDescr
         chosen = waiting.pop(int(np.argmax(cuts)))
         order.append(chosen)
         state = state.add_row(rows[chosen])
+        if len(state.rays) > max_rays:
+            raise ConeError(f"the cone has more than {max_rays} extreme rays after {len(state.rows)} face vectors")
         if not len(state.lines) and not len(state.rays):
             order += waiting
             break
