@@ -24,8 +24,11 @@ import numpy as np
 
 from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Rows, Vector, Weights
-from fixture_design.cones.kernel import TuckerPartition, tucker_partition
+from fixture_design.cones.kernel import TuckerPartition, nonnegative_least_squares, tucker_partition
 from fixture_design.tolerances import Tolerances
+
+#: Weights prove closure well enough if their bound is this part of what the hull's facets say [-].
+PROVED = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +105,33 @@ def closure_bound(rows: Rows, weights: Weights) -> float:
 
 
 def _hull_bounds(rows: Rows, errors: Weights, weights: Weights) -> Bounds:
+    """Bounds by the hull's facets; weights that are too uneven to prove closure are replaced by better ones.
+
+    The facets say how far it is from opening, but a reader has only the weights: without weights that prove s > 0 by
+    themselves the lower bound is not used.
+    """
     found = nearest_facet(rows)
     if found is None:
         return Bounds(-np.inf, np.inf, None, None)
     upper = float(np.max(rows @ found.motion + errors))
-    return Bounds(found.at_least - float(errors.max()), upper, found.motion, weights)
+    if closure_bound(rows, weights) <= PROVED * found.at_least:
+        weights = _stiffer_weights(rows, weights)
+    proved = closure_bound(rows, weights) > PROVED * found.at_least
+    lower = found.at_least - float(errors.max()) if proved else -np.inf
+    return Bounds(lower, upper, found.motion, weights)
+
+
+def _stiffer_weights(rows: Rows, weights: Weights) -> Weights:
+    """Balanced weights that resist every direction: pairs of nonnegative combinations that give +v and -v.
+
+    The directions v are the singular vectors of diag(w) D; a pair balances, and weighs most where v needs it.
+    """
+    directions = np.linalg.svd(weights[:, None] * rows, full_matrices=False)[2]
+    total = weights.copy()
+    for direction in directions:
+        pair = nonnegative_least_squares(rows.T, direction) + nonnegative_least_squares(rows.T, -direction)
+        total += pair / pair.sum()
+    across = np.linalg.svd(rows, full_matrices=False)[0]
+    balanced = total - across @ (across.T @ total)
+    best = balanced if balanced.min() >= 0 else total
+    return best / best.sum()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,8 +12,9 @@ from fixture_design.contacts import Provenance
 from fixture_design.errors import GeometryError
 from fixture_design.geometry.local import LocalSurface
 from fixture_design.geometry.shapes import OfEdge, PolygonVertices
+from fixture_design.geometry.smoothness import FacetMeasures, provenances
 from fixture_design.layout import Part
-from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES
+from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES, SMOOTH_ANGLE, ZERO_COORDINATE
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,12 +25,15 @@ class Polygon:
         name: of the part.
         vertices: shape (n, 2), counter-clockwise [m].
         first_edge: shape (n,), for each edge the first one of its facet: edges in one line are one facet.
+        provenance: of each facet's normal, by its first edge: an edge of a polygon that stands for an arc is as
+            approximate as the strip of a shaft.
         notes: none so far; solids have some.
     """
 
     name: str
     vertices: PolygonVertices
     first_edge: OfEdge
+    provenance: Mapping[int, Provenance]
     notes: tuple[str, ...] = ()
 
     @property
@@ -70,12 +75,22 @@ class Polygon:
         to_vertices = np.linalg.norm(self.vertices - p_PC, axis=1)
         apex = int(np.argmin(to_vertices))
         if to_vertices[apex] <= self.precision and self.first_edge[apex] == apex:
-            before, after = self.normal(apex - 1), self.normal(apex)
-            convex = before[0] * after[1] - before[1] * after[0] > 0
-            clauses = ((before, after),) if convex else ((before,), (after,))
-            return LocalSurface(clauses, f"apex {apex + 1}", Provenance())
+            return self._at_apex(apex)
         edge = int(np.argmin(self._distances(p_PC)))
-        return LocalSurface(((self.normal(edge),),), f"facet {self.first_edge[edge] + 1}", Provenance())
+        facet = int(self.first_edge[edge])
+        return LocalSurface(((self.normal(edge),),), f"facet {facet + 1}", self.provenance[facet])
+
+    def _at_apex(self, apex: int) -> LocalSurface:
+        before, after = self.normal(apex - 1), self.normal(apex)
+        sides = [self.provenance[int(self.first_edge[edge])] for edge in (apex - 1, apex)]
+        error = max(side.normal_error for side in sides)
+        turn = _angle(before, after)
+        if all(side.kind == "approximate" for side in sides) and abs(turn) < SMOOTH_ANGLE:
+            mean = before / np.linalg.norm(before) + after / np.linalg.norm(after)
+            return LocalSurface(((mean,),), f"apex {apex + 1}", Provenance("approximate", max(error, abs(turn))))
+        clauses = ((before, after),) if turn > 0 else ((before,), (after,))
+        kind = "approximate" if any(side.kind == "approximate" for side in sides) else "exact"
+        return LocalSurface(clauses, f"apex {apex + 1}", Provenance(kind, error))
 
     def feature(self, p_PC: Point) -> str:
         return self.local(p_PC).feature
@@ -114,10 +129,28 @@ def polygon_of(part: Part) -> Polygon:
     lengths = np.linalg.norm(edges, axis=1) * np.linalg.norm(before, axis=1)
     turn = np.abs(before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0])
     corner = (turn > COPLANAR_ANGLE * lengths) | (np.einsum("ij,ij->i", before, edges) < 0)
-    corners = np.flatnonzero(corner)
+    corners = np.flatnonzero(corner) if corner.any() else np.arange(len(vertices))
     # edges before the first corner belong to the facet that closes the polygon
     first = corners[np.searchsorted(corners, np.arange(len(vertices)), side="right") - 1]
-    return Polygon(part.name, vertices, first)
+    return Polygon(part.name, vertices, first, _provenance_of(edges, first, corners))
+
+
+def _provenance_of(edges: Points, first_edge: np.ndarray, corners: np.ndarray) -> dict[int, Provenance]:
+    """Of each facet: its edges may turn a little from its chord, and it may be one step of an arc."""
+    chords = np.array([edges[first_edge == corner].sum(axis=0) for corner in corners])
+    measures = []
+    for index, (corner, chord) in enumerate(zip(corners, chords, strict=True)):
+        spread = max(abs(_angle(chord, edge)) for edge in edges[first_edge == corner])
+        neighbours = {(index - 1) % len(corners), (index + 1) % len(corners)}
+        angles = {o: _angle(chord, chords[o]) for o in neighbours}
+        noise = spread if spread > ZERO_COORDINATE else 0.0
+        measures.append(FacetMeasures(float(np.linalg.norm(chord)), noise, angles))
+    return {int(corner): found for corner, found in zip(corners, provenances(measures), strict=True)}
+
+
+def _angle(first: Point, second: Point) -> float:
+    """The turn from one direction to the other, counter-clockwise positive [rad]."""
+    return float(np.arctan2(first[0] * second[1] - first[1] * second[0], first @ second))
 
 
 def _check(name: str, vertices: np.ndarray) -> None:
@@ -128,12 +161,13 @@ def _check(name: str, vertices: np.ndarray) -> None:
         bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
         raise GeometryError(f"{what} has a vertex that is not finite", found=f"vertex {bad + 1}: {vertices[bad]}")
     size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
-    close = np.linalg.norm(vertices[:, None] - vertices[None], axis=2) <= MERGE_VERTICES * size
-    repeated = np.argwhere(np.triu(close, 1))
-    if len(repeated):
-        first, second = (repeated[0] + 1).tolist()
-        raise GeometryError(f"{what} has a vertex twice", found=f"vertices {first} and {second}")
     import shapely
+    from scipy.spatial import cKDTree
+
+    repeated = cKDTree(vertices).query_pairs(MERGE_VERTICES * size)
+    if repeated:
+        first, second = min(repeated)
+        raise GeometryError(f"{what} has a vertex twice", found=f"vertices {first + 1} and {second + 1}")
 
     shape = shapely.Polygon(vertices)
     if not shape.is_valid:

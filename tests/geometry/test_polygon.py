@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from fixture_design.errors import DimensionError, GeometryError, OffSurfaceError, UnsupportedError
 from fixture_design.geometry import polygon_contact, polygon_of
-from fixture_design.layout import Element, PadTip, Pose
+from fixture_design.layout import Answer, Element, Layout, PadTip, Part, Pose
+from fixture_design.verification import verify
 from tests.geometry.parts import element, polygon_part, unit
 
 #: The body of the thesis's figure 8: an apex at (-2, 0) between (-1, 1) and (-1, -1).
@@ -114,3 +115,35 @@ def test_unusable_elements() -> None:
 def test_polygons_that_are_none(vertices: list, words: str) -> None:
     with pytest.raises(GeometryError, match=f"'polygon'.*({words})"):
         polygon_of(polygon_part(vertices))
+
+
+def ring(count: int, turn: float = 0.0) -> np.ndarray:
+    angles = 2 * np.pi * np.arange(count) / count + turn
+    return np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+@pytest.mark.parametrize("count", [12, 64, 200])
+def test_a_polygon_that_stands_for_a_disc_is_never_form_closed(count: int) -> None:
+    """Facet normals of a tessellated disc suggest closure; a disc always spins."""
+    rng = np.random.default_rng(count)
+    disc = Part("disc", "polygon", None, ring(count), 1.0, Pose.identity(2))
+    for _ in range(10):
+        angles = rng.uniform(0, 2 * np.pi, size=5)
+        at = np.column_stack([np.cos(angles), np.sin(angles)])
+        elements = tuple(Element(f"E{i}", "locator", point) for i, point in enumerate(at))
+        layout = Layout("disc", "planar", disc, surface_gap=0.1, elements=elements)
+        assert verify(layout).groups["all"].findings["form_closure"].answer is not Answer.YES
+
+
+def test_a_bow_of_small_turns_is_no_exact_facet() -> None:
+    """Two hundred edges that turn 9e-5 each are nearly one line, and their mean normal is off by what they turn."""
+    headings = 9e-5 * np.arange(200)
+    bow = np.cumsum(np.column_stack([np.cos(headings), np.sin(headings)]), axis=0)
+    polygon = polygon_of(Part("bow", "polygon", None, np.vstack([bow, [[0, 100.0]]]), 1.0, Pose.identity(2)))
+    surface = polygon.local((bow[0] + bow[1]) / 2)
+    assert surface.provenance.normal_error > 8e-3
+
+
+def test_a_plain_octagon_has_exact_facets() -> None:
+    polygon = polygon_of(Part("octagon", "polygon", None, ring(8), 1.0, Pose.identity(2)))
+    assert {provenance.kind for provenance in polygon.provenance.values()} == {"exact"}
