@@ -16,6 +16,7 @@ import numpy as np
 
 from fixture_design.analysis.restraint import Restraint, motion_in_world
 from fixture_design.arrays import Rows, Vector, Weights
+from fixture_design.cones.kernel import singular_directions
 from fixture_design.contacts import Constraints, motion_scaled
 from fixture_design.layout import Answer, Finding, Singular
 from fixture_design.tolerances import Tolerances
@@ -119,7 +120,7 @@ class _RankSearch:
         """
         self.nodes += 1
         rows = self.constraints.rows_of((*self.forced, *branched))
-        values, right = _singular(self.rows[rows])
+        values, right = singular_directions(self.rows[rows])
         error = float(np.linalg.norm(self.errors[rows]))
         if values[-1] > self.tolerances.near + error:
             return _FullRank((branched,))
@@ -142,7 +143,7 @@ class _RankSearch:
 
     def _deficient(self, choice: tuple[int, ...]) -> _Deficient:
         rows = self.constraints.rows_of(choice)
-        values, right = _singular(self.rows[rows])
+        values, right = singular_directions(self.rows[rows])
         certain = values[-1] <= self.tolerances.zero and not np.any(self.errors[rows])
         rank = int(np.sum(values > self.tolerances.tie))
         return _Deficient(choice, rank, float(values[-1]), right[-1] if certain else None)
@@ -161,10 +162,3 @@ class _RankSearch:
             elif best is None or adds.min() < best[0]:
                 best = (float(adds.min()), clause, [options[i] for i in np.argsort(adds)])
         return (spanned, None, []) if best is None else (spanned, *best[1:])
-
-
-def _singular(rows: Rows) -> tuple[np.ndarray, Rows]:
-    """All d singular values (zeros where there are fewer rows) and the right singular vectors, largest first."""
-    dimension = rows.shape[1]
-    _, values, right = np.linalg.svd(rows, full_matrices=True)
-    return np.pad(values, (0, dimension - len(values))), right

@@ -11,7 +11,7 @@ import numpy as np
 
 from fixture_design.arrays import Incidence, Rows, Vector, read_only
 from fixture_design.cones.cone import FaceForm, PolyhedralConvexCone, SpanForm, unit_rows
-from fixture_design.cones.kernel import MAX_RAYS, DoubleDescription, double_description
+from fixture_design.cones.kernel import MAX_RAYS, DoubleDescription, double_description, singular_directions
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 
@@ -101,9 +101,7 @@ def facets_of(rows: Rows, found: Conversion, tolerances: Tolerances = DEFAULT) -
 
 def _span_and_complement(rows: Rows, tolerances: Tolerances) -> tuple[Rows, Rows]:
     """Orthonormal bases of the span of unit rows and of its orthogonal complement."""
-    if not len(rows):
-        return np.zeros((0, rows.shape[1])), np.eye(rows.shape[1])
-    _, sizes, right = np.linalg.svd(rows, full_matrices=True)
+    sizes, right = singular_directions(rows)
     rank = int(np.sum(sizes > tolerances.tie))
     return right[:rank], right[rank:]
 

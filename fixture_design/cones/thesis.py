@@ -22,6 +22,7 @@ import numpy as np
 from fixture_design.arrays import Rows, Vector, read_only
 from fixture_design.cones.bidirection import balanced_rows
 from fixture_design.cones.cone import FaceForm, PolyhedralConvexCone, SpanForm, unit_rows
+from fixture_design.cones.kernel import singular_directions
 from fixture_design.cones.polar import dual
 from fixture_design.cones.reduction import irreducible_rows
 from fixture_design.tolerances import DEFAULT, Tolerances
@@ -79,7 +80,5 @@ def _vector_of_piece(negative: Rows, base: Rows, tolerances: Tolerances) -> Vect
 
 def _null_space(rows: Rows, tolerances: Tolerances) -> Rows:
     """Orthonormal base vectors of {x : rows . x = 0}."""
-    if not len(rows):
-        return np.eye(rows.shape[1])
-    _, values, right = np.linalg.svd(rows, full_matrices=True)
+    values, right = singular_directions(rows)
     return right[int(np.sum(values > tolerances.tie)) :]

@@ -162,9 +162,9 @@ def _check(name: str, vertices: np.ndarray) -> None:
         raise GeometryError(f"{what} has a vertex that is not finite", found=f"vertex {bad + 1}: {vertices[bad]}")
     size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     import shapely
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    repeated = cKDTree(vertices).query_pairs(MERGE_VERTICES * size)
+    repeated = KDTree(vertices).query_pairs(MERGE_VERTICES * size)
     if repeated:
         first, second = min(repeated)
         raise GeometryError(f"{what} has a vertex twice", found=f"vertices {first + 1} and {second + 1}")

@@ -50,6 +50,9 @@ QUESTIONS = {
     "force_closure": force_closure,
 }
 
+#: Names in one note before it says "and so many more".
+_NAMES_SHOWN = 5
+
 
 @dataclass(frozen=True, eq=False)
 class FoundContacts:
@@ -150,13 +153,21 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
 
 
 def coincident_notes(contacts: Sequence[Contact], report: Scale) -> list[str]:
-    """A note for every two contacts in one point with the same normals: counted twice, they add nothing."""
-    notes = []
-    for index, first in enumerate(contacts):
-        for second in contacts[index + 1 :]:
-            near = np.linalg.norm(first.point - second.point) <= DEFAULT.tie * report.length
-            if near and _same_normals(first, second):
-                notes.append(f"contacts {first.name!r} and {second.name!r} coincide")
+    """A note for contacts in one point with the same normals: given twice, they add nothing."""
+    points = np.array([contact.point for contact in contacts])
+    notes, named = [], set[int]()
+    for index, contact in enumerate(contacts):
+        if index in named:
+            continue
+        near = np.linalg.norm(points - contact.point, axis=1) <= DEFAULT.tie * report.length
+        later = [other for other in np.flatnonzero(near).tolist() if other > index]
+        twins = [other for other in later if _same_normals(contact, contacts[other])]
+        if twins:
+            named.update(twins)
+            names = [repr(contacts[other].name) for other in (index, *twins)]
+            if len(names) > _NAMES_SHOWN:
+                names = [*names[:_NAMES_SHOWN], f"{len(names) - _NAMES_SHOWN} more"]
+            notes.append(f"contacts {', '.join(names[:-1])} and {names[-1]} coincide")
     return notes
 
 

@@ -3,11 +3,13 @@
 * `double_description`: both forms of a cone, with incidence; `DoubleDescription.add_row` goes on from any of them.
 * `tucker_partition`: which rows balance and which motion leaves the others: closure, interior, membership, redundancy.
 * `minimum_norm_point`: the nearest point of a hull to the origin, for margins.
+* `singular_directions`: ranks and null spaces.
 * `nonnegative_least_squares`: the nearest point of a cone to a vector.
 
 They take unit rows and a relative zero, and report the values they decided on. `NAME` says which implementation runs.
 """
 
+from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.cones.kernel.double_description import MAX_RAYS, DoubleDescription, double_description
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
 from fixture_design.cones.kernel.nonnegative import nonnegative_least_squares
@@ -23,5 +25,6 @@ __all__ = [
     "double_description",
     "minimum_norm_point",
     "nonnegative_least_squares",
+    "singular_directions",
     "tucker_partition",
 ]

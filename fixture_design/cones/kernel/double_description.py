@@ -16,6 +16,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Incidence, Rows, Vector
+from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.errors import ConeError
 
 #: More rays than this are refused: the next step would need gigabytes.
@@ -140,8 +141,7 @@ class DoubleDescription:
 
 def _orthonormal_rest(lines: Float[np.ndarray, "l d"], direction: Float[np.ndarray, " l"]) -> Rows:
     """Orthonormal basis of the part of span(lines) orthogonal to ``direction`` (given in the lines' coordinates)."""
-    complement = np.linalg.svd(direction[None, :], full_matrices=True)[2][1:]
-    return complement @ lines
+    return singular_directions(direction[None, :])[1][1:] @ lines
 
 
 def double_description(rows: Rows, equalities: Rows, zero: float, max_rays: int = MAX_RAYS) -> DoubleDescription:

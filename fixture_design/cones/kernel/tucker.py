@@ -23,6 +23,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Mask, Rows, Vector, Weights
+from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
 
 #: Singular values below this, relative to the largest, are rounding in the core's pseudo-inverse [-].
@@ -110,7 +111,7 @@ def tucker_partition(rows: Rows, zero: float) -> TuckerPartition:
         balanced[:] = True  # the balanced rows span everything, so every other row balances against them
     if balanced.any() and len(free):
         # the steps have lost digits; the balanced rows' own singular vectors are as orthogonal to them as can be
-        right = np.linalg.svd(rows[balanced], full_matrices=True)[2]
+        _, right = singular_directions(rows[balanced])
         span, free = right[: len(span)], right[len(span) :]
     if motion is not None:
         motion = (motion @ free.T) @ free
@@ -131,7 +132,7 @@ def _split(
     Returns:
         the two bases, the smallest singular value kept and the largest dropped.
     """
-    _, values, right = np.linalg.svd(balanced, full_matrices=True)
+    values, right = singular_directions(balanced)
     rank = int(np.sum(values > zero))
     dropped = float(values[rank]) if rank < len(values) else 0.0
     return right[:rank] @ free, right[rank:] @ free, float(values[rank - 1]), dropped
@@ -139,9 +140,7 @@ def _split(
 
 def _complement(span: Rows) -> Rows:
     """Orthonormal rows that span the orthogonal complement."""
-    if not len(span):
-        return np.eye(span.shape[1])
-    return np.linalg.svd(span, full_matrices=True)[2][len(span) :]
+    return singular_directions(span)[1][len(span) :]
 
 
 def _with_level(
