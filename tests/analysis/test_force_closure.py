@@ -5,7 +5,7 @@ import pytest
 
 from fixture_design.analysis import Restraint, force_closure
 from fixture_design.contacts import Contact
-from fixture_design.layout import Answer, Layout, Motion
+from fixture_design.layout import Answer, Layout, Motion, Pose
 from fixture_design.verification import check, verify
 from tests.problems import CLOSURE_CASES, ClosureCase
 
@@ -52,6 +52,23 @@ def two_pairs(offset: float, friction: float) -> Restraint:
 )
 def test_threshold_in_space(offset: float, answer: Answer) -> None:
     assert force_closure(two_pairs(offset, 0.5)).answer is answer
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.39])
+@pytest.mark.parametrize("offset", [0.4999, 0.49, 0.51, 0.5001])
+def test_the_margin_goes_with_the_answer_however_the_layout_is_turned(offset: float, angle: float) -> None:
+    turn = Pose.from_xyz_rpy([0, 0, 0], [0, 0, angle])
+    contacts = [
+        Contact.on_facet(
+            c.name, "finger", turn.points(c.point[None])[0], turn.vectors(c.normals[0][None])[0], c.friction
+        )
+        for c in two_pairs(offset, 0.5).contacts
+    ]
+    finding = force_closure(Restraint.of(contacts))
+    assert finding.answer is (Answer.YES if offset < 0.5 else Answer.NO)
+    assert finding.edges is not None
+    if finding.margin is not None:
+        assert (finding.margin > 0) is (finding.answer is Answer.YES)
 
 
 def test_exact_tie_in_space_is_never_yes() -> None:

@@ -35,6 +35,15 @@ def test_commands_are_admissible_and_reciprocal(names: tuple[str, ...], seed: in
     assert classify_pair(force, displacement) == "reciprocal"
 
 
+@pytest.mark.parametrize("names", [("P2",), ("P2", "P3"), ("P1", "P2", "P3", "P4")])
+def test_position_controlled_motions_are_admissible_both_ways(names: tuple[str, ...]) -> None:
+    """The convex sum of a union holds lines that A does not: an apex alone does not leave R^3 free."""
+    control = control_of(figure_8(names))
+    for row in control.position_controlled:
+        assert union_element(row, control.displacements)
+        assert union_element(-row, control.displacements)
+
+
 def test_admissible_wishes_are_granted() -> None:
     control = control_of(figure_8(("P2", "P3", "P4")))
     cone = control.displacements.cones[0]
