@@ -40,6 +40,9 @@ SMOOTH_ANGLE = float(np.radians(35.0))
 #: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
 FARTHEST = 1e9
 
+#: Largest coefficient of friction [-]: nothing rubs like that, and squares of it keep their digits beside 1.
+MOST_FRICTION = 1e3
+
 #: Vertices closer than this are one vertex, relative to the size of the part [-].
 MERGE_VERTICES = 1e-9
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from fixture_design.arrays import ArrayLike, Point, read_only
 from fixture_design.errors import ContactError, DimensionError
-from fixture_design.tolerances import FARTHEST
+from fixture_design.tolerances import FARTHEST, MOST_FRICTION
 
 #: What an element or contact is for. Supports come up after clamping and locate nothing.
 Role = Literal["locator", "support", "clamp", "finger"]
@@ -93,8 +93,9 @@ class Contact:
                 raise ContactError(f"contact {self.name!r}: a normal is not finite: {normal.tolist()}")
             if not normal.any():
                 raise ContactError(f"contact {self.name!r}: a normal has zero length")
-        if not (np.isfinite(self.friction) and self.friction >= 0):
-            raise ContactError(f"contact {self.name!r}: friction must be a number >= 0, not {self.friction}")
+        if not 0 <= self.friction <= MOST_FRICTION:
+            limits = f"between 0 and {MOST_FRICTION:g}"
+            raise ContactError(f"contact {self.name!r}: friction must be a number {limits}, not {self.friction}")
 
     @classmethod
     def of(

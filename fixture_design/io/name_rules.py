@@ -23,6 +23,7 @@ def name_problems(layout: LayoutRecord) -> Iterator[Problem]:
     loads, stages = _names(layout, "loads"), _names(layout, "stages")
     for names in (touching, _names(layout, "key_features"), loads, stages):
         yield from _repeated(names)
+        yield from _unprintable(names)
     yield from _reserved(touching, ROLES, "a role, so that `active` could not tell it from one")
     yield from _reserved(stages, GROUPS, "a group that every layout has")
     known_loads = [name for _, name in loads]
@@ -43,6 +44,13 @@ def _repeated(names: _Named) -> Iterator[Problem]:
         if name in first:
             yield Problem(path, f"the name {name!r} is given twice", expected="another name", also=first[name])
         first.setdefault(name, path)
+
+
+def _unprintable(names: _Named) -> Iterator[Problem]:
+    """Control characters would reach terminals with the report."""
+    for path, name in names:
+        if not name.isprintable():
+            yield Problem(path, f"the name {name!r} has characters that do not print", expected="a printable name")
 
 
 def _reserved(names: _Named, words: Iterable[str], meaning: str) -> Iterator[Problem]:

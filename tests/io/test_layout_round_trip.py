@@ -157,6 +157,7 @@ def test_the_default_gap_is_in_metres_whatever_the_units() -> None:
 
 NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False) | st.sampled_from([0.0, 1e-300, 0.1, 1.7e8, 123456.789])
 POSITIVE = st.floats(1e-9, 1e6)
+FRICTION = st.floats(1e-9, 1e3)
 NAMES = st.text(
     st.characters(codec="utf-8", exclude_characters="#", exclude_categories=("C", "Z")), min_size=1, max_size=6
 ).filter(lambda name: name not in (*ROLES, "locators", "all")) | st.sampled_from(
@@ -202,7 +203,8 @@ def layouts(draw: st.DrawFn) -> dict[str, object]:
             data |= optional(draw, "limits", st.lists(POSITIVE, min_size=2, max_size=2).map(sorted))
         if not planar and "pin" in tip:
             data["axis"] = draw(directions)
-        for key in ("tolerance", "friction", "stiffness"):
+        data |= optional(draw, "friction", FRICTION)
+        for key in ("tolerance", "stiffness"):
             data |= optional(draw, key, POSITIVE)
         return data | optional(draw, "fixed", st.booleans())
 
@@ -217,11 +219,11 @@ def layouts(draw: st.DrawFn) -> dict[str, object]:
             )
         )
         data = {"name": next(names), "role": draw(st.sampled_from(ROLES)), "point": draw(vectors)}
-        return data | normals | optional(draw, "friction", POSITIVE | st.just(0.0))
+        return data | normals | optional(draw, "friction", FRICTION | st.just(0.0))
 
     data: dict[str, object] = {"schema": "fixture_design/layout/1", "space": "planar" if planar else "spatial"}
     data |= optional(draw, "name", NAMES) | optional(draw, "units", st.sampled_from(["m", "mm", "in"]))
-    data |= optional(draw, "gravity", vectors) | optional(draw, "friction", POSITIVE)
+    data |= optional(draw, "gravity", vectors) | optional(draw, "friction", FRICTION)
     data |= optional(draw, "surface_gap", POSITIVE)
     geometry = {"polygon": [[0, 0], [draw(POSITIVE), 0], [0, draw(POSITIVE)]]} if planar else {"mesh": "a b/Teil ü.stl"}
     part = (
