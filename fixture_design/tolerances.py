@@ -37,6 +37,12 @@ COPLANAR_ANGLE = 1e-4
 #: more from strip to strip.
 SMOOTH_ANGLE = float(np.radians(35.0))
 
+#: Angle up to which equal facets in a closed ring may be a coarse mesh of a round surface [rad]: five a turn.
+RING_ANGLE = float(np.radians(73.0))
+
+#: Facets in such a ring are this equal, in area and angle [-].
+RING_EQUAL = 1e-3
+
 #: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
 FARTHEST = 1e9
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,8 @@ from jaxtyping import Float
 
 from fixture_design.arrays import Indices
 from fixture_design.contacts import Provenance
+from fixture_design.errors import format_length
+from fixture_design.geometry.noise import angles_to_axes, offsets_from_planes, on_axes
 from fixture_design.geometry.piece import area_vectors
 from fixture_design.geometry.planes import neighbours, plane_numbers
 from fixture_design.geometry.shapes import (
@@ -22,6 +25,10 @@ from fixture_design.geometry.shapes import (
 )
 from fixture_design.geometry.smoothness import FacetMeasures, provenances
 from fixture_design.geometry.widths import widths_and_angles
+from fixture_design.tolerances import COPLANAR_ANGLE
+
+#: Names in a note before it says how many more there are.
+_NAMES_SHOWN = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +43,7 @@ class Facet:
         provenance: exact with the angle that rounding allows, or approximate: a strip of a curved surface.
         width: smallest width [m].  noise: angle by which the rounding of its vertices may turn it [rad].
         angles: {index of a neighbouring facet: dihedral angle [rad], positive on convex edges}.
+        squared: angle by which the normal was turned to be along a coordinate axis [rad]; 0 if it was not.
     """
 
     name: str
@@ -46,6 +54,7 @@ class Facet:
     width: float
     noise: float
     angles: dict[int, float]
+    squared: float = 0.0
 
     @property
     def normal_error(self) -> float:
@@ -53,28 +62,92 @@ class Facet:
         return self.provenance.normal_error
 
 
-def facets_of(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> tuple[Facet, ...]:
-    """The facets of a sound mesh, in the order of their names.
+@dataclass(frozen=True, eq=False)
+class Facets:
+    """The facets of a part, in the order of their names.
+
+    Attributes:
+        noise: how far vertices are off the planes of the flat facets that they should lie in [m], at most.
+    """
+
+    facets: tuple[Facet, ...]
+    noise: float
+
+
+def facets_of(vertices: Vertices, triangles: Triangles, rounding: PerVertex, faceted: bool = False) -> Facets:
+    """The facets of a sound mesh.
+
+    Slivers belong to facets but have no say in where their planes are. Vertices that turn out to be off by more than
+    their rounding count as known to no better than that, all of them. A facet that is square to an axis within what
+    this allows is taken as square: `Facet.squared` says by how much it was turned.
 
     Args:
         vertices: shape (v, 3) [m].  triangles: shape (t, 3).  rounding: of each vertex, shape (v,) [m].
+        faceted: no facet stands for a curved surface.
     """
     areas = area_vectors(vertices, triangles)
-    grown = plane_numbers(vertices, triangles, rounding)
+    grown, sliver = plane_numbers(vertices, triangles, rounding)
     number = _in_order(vertices, triangles, areas, grown)
-    normals = _sums(areas, number)
+    votes = ~sliver | (_sums(~sliver[:, None] * 1.0, number)[number, 0] == 0)
+    voted = _sums(areas * votes[:, None], number)
+    units = voted / np.linalg.norm(voted, axis=1, keepdims=True)
+    normals = units * np.einsum("ij,ij->i", units, _sums(areas, number))[:, None]
+    angles = _dihedral_angles(vertices, triangles, units, number)
+    sizes = np.linalg.norm(normals, axis=1).tolist()
+    owner_and_vertex = np.unique(np.repeat(number[votes], 3) * len(vertices) + triangles[votes].ravel())
+    used, starts = (
+        owner_and_vertex % len(vertices),
+        np.flatnonzero(np.diff(owner_and_vertex // len(vertices), prepend=-1)),
+    )
+
+    def measured(known_to: PerVertex) -> tuple[list[FacetMeasures], tuple[Provenance, ...]]:
+        widths, turns = widths_and_angles(vertices, known_to, used, starts, normals)
+        measures = [FacetMeasures(*m) for m in zip(widths.tolist(), turns.tolist(), angles, sizes, strict=True)]
+        return measures, provenances(measures, faceted)
+
+    measures, origins = measured(rounding)
+    flat = np.array([origin.kind == "exact" for origin in origins], dtype=bool)
+    planes = _centroids(vertices, triangles[votes], areas[votes], number[votes])
+    noise = float(offsets_from_planes(vertices, used, starts, units, planes)[flat].max(initial=0.0))
+    if noise > rounding.max():
+        measures, origins = measured(np.maximum(rounding, noise))
+    turned = angles_to_axes(units)
+    square = np.array([o.kind == "exact" and o.normal_error <= COPLANAR_ANGLE for o in origins], dtype=bool)
+    square &= (turned > 0) & (turned <= [o.normal_error for o in origins])
+    normals = np.where(square[:, None], on_axes(normals), normals)
     centroids = _centroids(vertices, triangles, areas, number)
-    angles = _dihedral_angles(vertices, triangles, normals, number)
     order = np.argsort(number, kind="stable")
     members = np.split(order, np.cumsum(np.bincount(number))[:-1])
-    owner_and_vertex = np.unique(np.repeat(number, 3) * len(vertices) + triangles.ravel())
-    starts = np.flatnonzero(np.diff(owner_and_vertex // len(vertices), prepend=-1))
-    widths, noise = widths_and_angles(vertices, rounding, owner_and_vertex % len(vertices), starts, normals)
-    measures = [FacetMeasures(*values) for values in zip(widths.tolist(), noise.tolist(), angles, strict=True)]
-    known = zip(members, provenances(measures), measures, strict=True)
-    return tuple(
-        Facet(f"facet {i + 1}", normals[i], centroids[i], mine, origin, facet.width, facet.noise, dict(facet.angles))
-        for i, (mine, origin, facet) in enumerate(known)
+    return Facets(
+        tuple(
+            Facet(
+                f"facet {i + 1}",
+                normals[i],
+                centroids[i],
+                members[i],
+                Provenance() if square[i] else origins[i],
+                measures[i].width,
+                measures[i].noise,
+                dict(measures[i].angles),
+                float(turned[i]) if square[i] else 0.0,
+            )
+            for i in range(len(members))
+        ),
+        noise,
+    )
+
+
+def facet_notes(name: str, facets: Sequence[Facet], noise: float) -> tuple[str, ...]:
+    """What was taken for granted about facets, for people; ``noise`` as in `Facets`."""
+    squared = [facet for facet in facets if facet.squared]
+    if not squared:
+        return ()
+    names = ", ".join(facet.name.removeprefix("facet ") for facet in squared[:_NAMES_SHOWN])
+    more = f" and {len(squared) - _NAMES_SHOWN} more" if len(squared) > _NAMES_SHOWN else ""
+    turned = max(facet.squared for facet in squared)
+    return (
+        f"{name}: {'facet' if len(squared) == 1 else 'facets'} {names}{more} taken as square to the axes of the part, "
+        f"from which they are off by up to {turned:.1e} rad: its vertices are off by {format_length(noise)}",
     )
 
 
@@ -100,7 +173,7 @@ def _in_order(vertices: Vertices, triangles: Triangles, areas: TriangleVectors, 
 
 
 def _dihedral_angles(
-    vertices: Vertices, triangles: Triangles, normals: FacetVectors, number: OfTriangle
+    vertices: Vertices, triangles: Triangles, units: FacetVectors, number: OfTriangle
 ) -> list[dict[int, float]]:
     """For each facet the angle to each neighbour, positive on convex edges; the largest one if they meet twice."""
     triangle, corner = np.nonzero((across := neighbours(triangles, len(vertices))) >= 0)
@@ -108,11 +181,10 @@ def _dihedral_angles(
     between = first != second
     triangle, corner, first, second = triangle[between], corner[between], first[between], second[between]
     along = vertices[triangles[triangle, (corner + 1) % 3]] - vertices[triangles[triangle, corner]]
-    units = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     cross = np.cross(units[first], units[second])
     sine, cosine = np.linalg.norm(cross, axis=1), np.einsum("ij,ij->i", units[first], units[second])
     angles = np.copysign(np.arctan2(sine, cosine), np.einsum("ij,ij->i", cross, along))
-    result: list[dict[int, float]] = [{} for _ in normals]
+    result: list[dict[int, float]] = [{} for _ in units]
     for one, other, angle in zip(first.tolist(), second.tolist(), angles.tolist(), strict=True):
         if abs(angle) >= abs(result[one].get(other, 0.0)):
             result[one][other] = angle

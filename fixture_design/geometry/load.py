@@ -35,8 +35,8 @@ def load_part(part: Part) -> PartGeometry:
         pieces, notes = read_urdf(part.file)
     else:
         pieces, notes = [_mesh_piece(part.file, part.scale)], ()
-    geometry = PartGeometry.of_pieces(part.name, [sound(piece) for piece in pieces], notes)
-    return replace(geometry, notes=(*geometry.notes, *size_notes(geometry.vertices, part.file.name)))
+    geometry = PartGeometry.of_pieces(part.name, [sound(piece) for piece in pieces], notes, part.faceted)
+    return replace(geometry, read_notes=(*geometry.read_notes, *size_notes(geometry.vertices, part.file.name)))
 
 
 def _mesh_piece(file: Path, scale: float) -> Piece:

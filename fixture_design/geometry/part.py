@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from fixture_design.arrays import read_only
 from fixture_design.geometry.distance import DistanceField
-from fixture_design.geometry.facets import Facet, facets_of
+from fixture_design.geometry.facets import Facet, Facets, facet_notes, facets_of
 from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.planes import neighbours
 from fixture_design.geometry.shapes import (
@@ -35,17 +35,21 @@ class PartGeometry:
         name: for messages.
         vertices: shape (v, 3) [m].  triangles: shape (t, 3), counter-clockwise seen from outside.
         rounding: shape (v,), how far each vertex may be from what was meant [m].
-        notes: what was mended or looks doubtful, for people.
+        read_notes: what was mended or looks doubtful on reading, for people.
+        faceted: no facet stands for a piece of a round surface.
     """
 
     name: str
     vertices: Vertices
     triangles: Triangles
     rounding: PerVertex
-    notes: tuple[str, ...] = ()
+    read_notes: tuple[str, ...] = ()
+    faceted: bool = False
 
     @classmethod
-    def of_pieces(cls, name: str, pieces: Sequence[Piece], notes: Sequence[str] = ()) -> PartGeometry:
+    def of_pieces(
+        cls, name: str, pieces: Sequence[Piece], notes: Sequence[str] = (), faceted: bool = False
+    ) -> PartGeometry:
         """The sound pieces as one part. Their vertices stay apart: touching solids are shells of their own."""
         starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
         triangles = np.vstack([piece.triangles + start for piece, start in zip(pieces, starts, strict=False)])
@@ -56,7 +60,13 @@ class PartGeometry:
             triangles,
             read_only(np.concatenate([piece.rounding for piece in pieces])),
             (*notes, *(note for piece in pieces for note in piece.notes)),
+            faceted,
         )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was mended, and what facets were taken for, for people."""
+        return (*self.read_notes, *facet_notes(self.name, self.facets, self._facets.noise))
 
     @property
     def low(self) -> Vector3:
@@ -79,12 +89,19 @@ class PartGeometry:
     @property
     def on_edge(self) -> float:
         """How near to an edge a point counts as on it [m]: no nearer than the edge itself is known."""
-        return max(2 * self.half_diagonal * MERGE_VERTICES, ON_EDGE_ROUNDINGS * float(self.rounding.max()))
+        return max(
+            2 * self.half_diagonal * MERGE_VERTICES,
+            ON_EDGE_ROUNDINGS * max(float(self.rounding.max()), self._facets.noise),
+        )
 
     @cached_property
+    def _facets(self) -> Facets:
+        return facets_of(self.vertices, self.triangles, self.rounding, self.faceted)
+
+    @property
     def facets(self) -> tuple[Facet, ...]:
         """The plane faces, in the order of their names."""
-        return facets_of(self.vertices, self.triangles, self.rounding)
+        return self._facets.facets
 
     @cached_property
     def facet_of_triangle(self) -> OfTriangle:

@@ -36,24 +36,27 @@ def neighbours(triangles: Triangles, vertex_count: int) -> Triangles:
     return np.where(found, place // 3, -1).reshape(-1, 3)
 
 
-def plane_numbers(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> OfTriangle:
-    """Which facet each triangle is of, shape (t,), numbered from 0 in the order in which they were grown.
+def plane_numbers(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> tuple[OfTriangle, TriangleMask]:
+    """Which facet each triangle is of, shape (t,), numbered from 0 in the order in which they were grown; and slivers.
 
     A neighbour belongs to the facet if its normal is within ``COPLANAR_ANGLE`` of the seed's and its corners lie in the
-    seed's plane as far as that angle allows. The normal of a sliver is noise, as the rounding of its vertices turns it
-    by more than that: it belongs if its corners lie in the plane up to that rounding. Comparing with the seed, the
-    largest triangle, and not with the triangle next door keeps a finely curved surface from becoming one facet.
+    seed's plane as far as that angle allows. A sliver is a triangle whose normal the rounding of its vertices turns by
+    more than that: it belongs if its corners lie in the plane up to that rounding and its normal is off by no more than
+    the rounding explains; else the first strip of a fillet would be taken for a part of the flat beside it. Comparing
+    with the seed, the largest triangle, and not with the triangle next door keeps a finely curved surface from becoming
+    one facet.
     """
     areas = area_vectors(vertices, triangles)
     lengths = np.linalg.norm(areas, axis=1)
     units = areas / lengths[:, None]
     noise = plane_noise(vertices, triangles, rounding)
-    sliver = noise > COPLANAR_ANGLE * heights(vertices, triangles)
-    grown = _Growth(vertices, triangles, units, noise, sliver)
+    turn = noise / heights(vertices, triangles)
+    sliver = turn > COPLANAR_ANGLE
+    grown = _Growth(vertices, triangles, units, noise, np.where(sliver, turn, 0.0))
     # slivers seed last, whatever their area: their own plane is not known
     for seed in np.lexsort((-lengths, sliver)).tolist():
         grown.from_seed(seed)
-    return np.array(grown.number, dtype=np.int64)
+    return np.array(grown.number, dtype=np.int64), sliver
 
 
 def plane_noise(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> PerTriangle:
@@ -66,11 +69,11 @@ class _Growth:
     """Facets while they grow. Plain lists and floats: visiting triangles one by one is what numpy is slow at."""
 
     def __init__(
-        self, vertices: Vertices, triangles: Triangles, units: TriangleVectors, noise: PerTriangle, sliver: TriangleMask
+        self, vertices: Vertices, triangles: Triangles, units: TriangleVectors, noise: PerTriangle, turn: PerTriangle
     ) -> None:
         self.corners = vertices[triangles].tolist()
         self.units = units.tolist()
-        self.noise, self.sliver = noise.tolist(), sliver.tolist()
+        self.noise, self.turn = noise.tolist(), turn.tolist()
         self.across = neighbours(triangles, len(vertices)).tolist()
         self.number = [-1] * len(triangles)
         self.count = 0
@@ -90,10 +93,10 @@ class _Growth:
 
     def _belongs(self, other: int, seed: int) -> bool:
         (nx, ny, nz), (ox, oy, oz) = self.units[seed], self.corners[seed][0]
+        ux, uy, uz = self.units[other]
+        if (ux - nx) ** 2 + (uy - ny) ** 2 + (uz - nz) ** 2 > (COPLANAR_ANGLE + self.turn[other]) ** 2:
+            return False
         allowed = self.noise[other] + self.noise[seed]
-        if not self.sliver[other]:
-            ux, uy, uz = self.units[other]
-            if (ux - nx) ** 2 + (uy - ny) ** 2 + (uz - nz) ** 2 > COPLANAR_ANGLE**2:
-                return False
+        if not self.turn[other]:
             allowed += COPLANAR_ANGLE * max(abs(x - ox) + abs(y - oy) + abs(z - oz) for x, y, z in self.corners[other])
         return all(abs((x - ox) * nx + (y - oy) * ny + (z - oz) * nz) <= allowed for x, y, z in self.corners[other])

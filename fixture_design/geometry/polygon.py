@@ -132,10 +132,10 @@ def polygon_of(part: Part) -> Polygon:
     corners = np.flatnonzero(corner) if corner.any() else np.arange(len(vertices))
     # edges before the first corner belong to the facet that closes the polygon
     first = corners[np.searchsorted(corners, np.arange(len(vertices)), side="right") - 1]
-    return Polygon(part.name, vertices, first, _provenance_of(edges, first, corners))
+    return Polygon(part.name, vertices, first, _provenance_of(edges, first, corners, part.faceted))
 
 
-def _provenance_of(edges: Points, first_edge: np.ndarray, corners: np.ndarray) -> dict[int, Provenance]:
+def _provenance_of(edges: Points, first_edge: np.ndarray, corners: np.ndarray, faceted: bool) -> dict[int, Provenance]:
     """Of each facet: its edges may turn a little from its chord, and it may be one step of an arc."""
     chords = np.array([edges[first_edge == corner].sum(axis=0) for corner in corners])
     measures = []
@@ -144,8 +144,9 @@ def _provenance_of(edges: Points, first_edge: np.ndarray, corners: np.ndarray) -
         neighbours = {(index - 1) % len(corners), (index + 1) % len(corners)}
         angles = {o: _angle(chord, chords[o]) for o in neighbours}
         noise = spread if spread > ZERO_COORDINATE else 0.0
-        measures.append(FacetMeasures(float(np.linalg.norm(chord)), noise, angles))
-    return {int(corner): found for corner, found in zip(corners, provenances(measures), strict=True)}
+        length = float(np.linalg.norm(chord))
+        measures.append(FacetMeasures(length, noise, angles, length))
+    return {int(corner): found for corner, found in zip(corners, provenances(measures, faceted), strict=True)}
 
 
 def _angle(first: Point, second: Point) -> float:

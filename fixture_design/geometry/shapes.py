@@ -20,6 +20,7 @@ Corners = Float[np.ndarray, "t 3 3"]
 FacetVectors = Float[np.ndarray, "f 3"]
 PerFacet = Float[np.ndarray, "f"]
 OfFacet = Int[np.ndarray, "f"]
+FacetMask = Bool[np.ndarray, "f"]
 #: The facet of each edge of a polygon, and its corners.
 OfEdge = Int[np.ndarray, "n"]
 PolygonVertices = Float[np.ndarray, "n 2"]

@@ -114,6 +114,7 @@ class _Converter:
             mass=part.mass,
             center=None if part.center is None else self._point(part.center),
             form_error=self._maybe_metres(part.form_error),
+            faceted=part.faceted,
         )
 
     def element(self, element: ElementRecord) -> Element:

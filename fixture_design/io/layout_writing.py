@@ -67,6 +67,7 @@ def _part(part: Part, folder: Path) -> Data:
             "mass": _number(part.mass),
             "center": _numbers(part.center),
             "form_error": _number(part.form_error),
+            "faceted": part.faceted or None,
         }
     )
 

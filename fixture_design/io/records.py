@@ -58,6 +58,9 @@ class PartRecord(Record):
     mass: Positive | None = Field(None, description="[kg]")
     center: Coordinates | None = Field(None, description="centre of mass in P [length]")
     form_error: NotNegative | None = Field(None, description="largest deviation of the surface [length]")
+    faceted: bool = Field(
+        False, description="every facet is meant as it is; none stands for a piece of a round surface"
+    )
 
 
 class PinRecord(Record):

@@ -43,6 +43,7 @@ class Part:
         scale: what mesh vertices are multiplied by to be metres; 1 for URDF, whose meshes carry their own.
         pose: X_WP.
         mass: [kg].  center: centre of mass in P [m].  form_error: largest deviation of the surface [m].
+        faceted: its facets are meant as they are; none stands for a piece of a round surface.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Part:
     mass: float | None = None
     center: Point | None = None
     form_error: float | None = None
+    faceted: bool = False
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from fixture_design.geometry import PartGeometry
-from tests.geometry.parts import Mesh, box, circle, l_shape, loaded, prism, seven_eighths, unit, write
+from fixture_design.geometry import PartGeometry, load_part
+from tests.geometry.parts import Mesh, box, circle, l_shape, loaded, part, prism, seven_eighths, unit, write
 
 
 def approximate(geometry: PartGeometry) -> set[str]:
@@ -147,3 +148,68 @@ def test_strips_narrower_than_their_vertices_are_known_are_not_called_exact(tmp_
     for facet in strips:
         true = unit([*facet.centroid[:2], 0])
         assert np.arccos(np.clip(unit(facet.normal) @ true, -1, 1)) <= facet.normal_error
+
+
+@pytest.mark.parametrize("count", [5, 6, 7, 8, 10])
+def test_equal_facets_all_around_may_be_a_coarse_shaft(tmp_path: Path, count: int) -> None:
+    file = write(tmp_path, prism(circle(0.01, count), 0.03))
+    unsure = load_part(part(file))
+    assert (len(flats(unsure)), len(approximate(unsure))) == (2, count)
+    assert max(facet.normal_error for facet in unsure.facets) == pytest.approx(np.pi / count, rel=1e-9)
+    meant = load_part(replace(part(file), faceted=True))
+    assert approximate(meant) == set()
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        trimesh.creation.torus(0.03, 0.01, 6, 8),
+        trimesh.creation.uv_sphere(0.02, count=[6, 6]),
+        trimesh.creation.cone(0.02, 0.03, sections=7),
+        trimesh.creation.icosahedron(),
+    ],
+    ids=["torus", "sphere", "cone", "icosahedron"],
+)
+def test_coarse_meshes_of_double_curvature_are_approximate(tmp_path: Path, mesh: trimesh.Trimesh) -> None:
+    geometry = loaded(tmp_path, (np.array(mesh.vertices), np.array(mesh.faces)))
+    curved = [facet for facet in geometry.facets if abs(unit(facet.normal)[2]) < 0.999]
+    assert {facet.provenance.kind for facet in curved} == {"approximate"}
+
+
+def test_a_square_bar_with_equal_chamfers_is_no_shaft(tmp_path: Path) -> None:
+    c, s = 0.01, 0.04
+    outline = [[c, 0], [s - c, 0], [s, c], [s, s - c], [s - c, s], [c, s], [0, s - c], [0, c]]
+    assert approximate(loaded(tmp_path, prism(outline, 0.01))) == set()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_vertices_that_are_off_by_more_than_they_are_written_to_are_noticed(tmp_path: Path, seed: int) -> None:
+    vertices, triangles = seven_eighths(0.02)
+    off = 1.3e-8
+    shaken = vertices + off * np.random.default_rng(seed).uniform(-1, 1, vertices.shape)
+    geometry = loaded(tmp_path, (shaken, triangles))
+    assert all(unit(facet.normal).tolist().count(0.0) == 2 for facet in geometry.facets)
+    assert all(0 < facet.squared < 1e-5 for facet in geometry.facets)
+    assert "taken as square to the axes" in " ".join(geometry.notes)
+    # turned, there are no axes to be square to: the error remains, and covers what is true
+    turn = Rotation.from_euler("xyz", [0.3, 0.4, 0.5]).as_matrix()
+    turned = loaded(tmp_path, (shaken @ turn.T, triangles))
+    for facet in turned.facets:
+        true = turn @ np.round(turn.T @ unit(facet.normal))
+        assert 1e-8 < np.linalg.norm(unit(facet.normal) - true) <= facet.normal_error < 1e-5
+
+
+def test_a_flat_that_runs_into_fine_fillets_keeps_its_normal(tmp_path: Path) -> None:
+    """Written to six decimals, the first strip of a fillet is a sliver, as its normal is hardly known."""
+    r, s, steps = 0.002, 0.2, 24
+    outline = []
+    for x, y, start in ((s - r, r, -90), (s - r, s - r, 0), (r, s - r, 90), (r, r, 180)):
+        for angle in np.radians(start + np.linspace(0, 90, steps + 1)):
+            outline.append([x + r * np.cos(angle), y + r * np.sin(angle)])
+    vertices, triangles = prism(outline, 0.1)
+    turn = Rotation.from_euler("z", 0.3).as_matrix()
+    geometry = loaded(tmp_path, (np.round(vertices @ turn.T, 6), triangles))
+    sides = sorted(geometry.facets, key=lambda facet: -facet.width * np.hypot(*unit(facet.normal)[:2]))[:4]
+    for facet in sides:
+        true = turn @ np.round(turn.T @ unit(facet.normal))
+        assert np.linalg.norm(unit(facet.normal) - true) <= facet.normal_error < 1e-3

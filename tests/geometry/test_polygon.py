@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -144,6 +146,18 @@ def test_a_bow_of_small_turns_is_no_exact_facet() -> None:
     assert surface.provenance.normal_error > 8e-3
 
 
-def test_a_plain_octagon_has_exact_facets() -> None:
-    polygon = polygon_of(Part("octagon", "polygon", None, ring(8), 1.0, Pose.identity(2)))
+@pytest.mark.parametrize("count", [5, 6, 8, 10])
+def test_a_regular_polygon_may_be_a_coarse_circle_until_the_designer_says_that_it_is_none(count: int) -> None:
+    part = Part("bar", "polygon", None, ring(count), 1.0, Pose.identity(2))
+    unsure = polygon_of(part).provenance.values()
+    assert {provenance.kind for provenance in unsure} == {"approximate"}
+    assert {round(provenance.normal_error, 9) for provenance in unsure} == {round(np.pi / count, 9)}
+    meant = polygon_of(replace(part, faceted=True)).provenance.values()
+    assert {provenance.kind for provenance in meant} == {"exact"}
+
+
+def test_a_square_with_chamfers_has_exact_facets() -> None:
+    """Its eight corners lie on a circle, yet its sides are not equal."""
+    outline = np.array([[3, -1], [3, 1], [1, 3], [-1, 3], [-3, 1], [-3, -1], [-1, -3], [1, -3]], dtype=float)
+    polygon = polygon_of(Part("block", "polygon", None, outline, 1.0, Pose.identity(2)))
     assert {provenance.kind for provenance in polygon.provenance.values()} == {"exact"}
