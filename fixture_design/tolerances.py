@@ -43,6 +43,10 @@ RING_ANGLE = float(np.radians(73.0))
 #: Facets in such a ring are this equal, in area and angle [-].
 RING_EQUAL = 1e-3
 
+#: Vertices this near to a round surface lie on it, relative to the size of the part [-]: beyond what CAD kernels leave,
+#: well below the depth of a strip under it.
+ROUND_FIT = 1e-6
+
 #: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
 FARTHEST = 1e9
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point
+from fixture_design.arrays import Indices, Point, Rows
 from fixture_design.contacts import Provenance
+from fixture_design.contacts.friction import tangents
 from fixture_design.errors import GeometryError, UnsupportedError
 from fixture_design.geometry.nearest import clearance, touched_triangles
 from fixture_design.geometry.part import PartGeometry
@@ -17,6 +19,9 @@ from fixture_design.tolerances import SLIVER_NOISE, SMOOTH_ANGLE
 
 #: Facets must be this many times larger than the blur around a corner, so that looking into it sees the corner [-].
 _ROOM_TO_LOOK = 20.0
+
+#: Kinds of provenance, the best first.
+_DOUBT = ("exact", "fitted", "approximate")
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,12 +33,15 @@ class LocalSurface:
         feature: "facet 3", "edge facet 3 | facet 5" or "apex facet 1 | facet 2 | facet 7".
         provenance: of the normals, the worst of them.
         facets: indices of the facets that meet there; of a polygon, none.
+        slips: for each normal, clause after clause, the motions about P's origin that move its surface along itself,
+            shape (k, 6) or planar (k, 3); empty where they are not known.
     """
 
     clauses: tuple[tuple[Point, ...], ...]
     feature: str
     provenance: Provenance
     facets: tuple[int, ...] = ()
+    slips: tuple[Rows, ...] = ()
 
     @property
     def shape(self) -> Literal["flat", "convex", "concave", "mixed"]:
@@ -43,18 +51,24 @@ class LocalSurface:
 
 
 def feature_name(geometry: PartGeometry, facets: Indices) -> str:
-    """The name of the place where these facets meet."""
-    kind = {1: "", 2: "edge "}.get(len(facets), "apex ")
-    return kind + " | ".join(geometry.facets[facet].name for facet in facets)
+    """The name of the place where these facets meet; facets of one round surface go by its name."""
+    names = []
+    for facet in facets.tolist():
+        surface = geometry.surface_of_facet(facet)
+        names.append(geometry.facets[facet].name if surface is None else surface.name)
+    names = list(dict.fromkeys(names))
+    kind = {1: "", 2: "edge "}.get(len(names), "apex ")
+    return kind + " | ".join(names)
 
 
 def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = None) -> LocalSurface:
     """The logic of the surface at one of its points.
 
-    Strips of one curved surface count as one facet, with the mean of their normals and the error that this may have.
+    Facets of one round surface count as that surface, with its normal. Strips of a curved surface that is not known
+    count as one facet, with the mean of their normals and the error that this may have.
 
     Args:
-        p_PC: the point, shape (3,) [m].
+        p_PC: the point, shape (3,) [m]; on a round surface it may be off the facets that stand for it.
         within: triangles this near count as touched [m], by default ``geometry.on_edge``. Corners that are finer than
             can be looked into are looked at again with ten times as much, twice.
 
@@ -63,34 +77,58 @@ def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = No
         UnsupportedError: the apex of a cone; corners with too many facets, or too fine to be looked at.
     """
     within = within or geometry.on_edge
-    touched = touched_triangles(geometry, p_PC, within)
+    p_PF = p_PC
+    touched = touched_triangles(geometry, p_PF, within)
+    if not len(touched):
+        p_PF = geometry.surface.at(p_PC)[1]
+        touched = touched_triangles(geometry, p_PF, within)
     facets = facets_at(geometry, touched)
     if not len(facets):
         raise GeometryError(
             f"no triangle of {geometry.name!r} is at {place_text(p_PC)}", expected="a point on its surface"
         )
     name = feature_name(geometry, facets)
-    patches = _patches(geometry, facets)
-    normals = [_patch_normal(geometry, patch, name) for patch in patches]
-    error = max(geometry.facets[facet].normal_error for facet in facets)
-    spread = max(_largest_angle(normal, geometry, patch) for normal, patch in zip(normals, patches, strict=True))
-    kinds = {geometry.facets[facet].provenance.kind for facet in facets}
-    provenance = Provenance("approximate" if "approximate" in kinds else "exact", max(error, spread))
-    sets = sets_by_edges(geometry, touched, patches)
+    patches = [_patch(geometry, members, p_PC, name) for members in _patches(geometry, facets)]
+    sets = sets_by_edges(geometry, touched, [patch.facets for patch in patches])
     if sets is None:
-        if clearance(geometry, p_PC, touched) < _ROOM_TO_LOOK * within:
+        if clearance(geometry, p_PF, touched) < _ROOM_TO_LOOK * within:
             if within >= 100 * geometry.on_edge:
                 problem = (
                     f"{geometry.name!r}: {name} at {place_text(p_PC)}: facets are too small to see what meets there"
                 )
                 raise UnsupportedError(problem, expected="a place away from small facets")
             return local_surface(geometry, p_PC, 10 * within)
-        if len(patches) > 1:
-            # neither convex nor concave throughout, or of several solids: every facet speaks for itself
-            normals = [geometry.facets[facet].normal for facet in facets]
-        sets = sets_by_looking(geometry, p_PC, touched, units_of(np.array(normals)), name)
-    clauses = tuple(tuple(normals[index] for index in chosen) for chosen in sets)
-    return LocalSurface(clauses, name, provenance, tuple(facets.tolist()))
+        sets = _sets_by_looking(geometry, p_PF, touched, patches, name)
+    worst = max((patch.provenance for patch in patches), key=lambda origin: _DOUBT.index(origin.kind))
+    provenance = Provenance(worst.kind, max(patch.provenance.normal_error for patch in patches))
+    clauses = tuple(tuple(patches[index].normal for index in chosen) for chosen in sets)
+    slips = tuple(patches[index].slips for chosen in sets for index in chosen)
+    return LocalSurface(clauses, name, provenance, tuple(facets.tolist()), slips)
+
+
+@dataclass(frozen=True, eq=False)
+class _Patch:
+    """Facets that count as one there: their normal, how well it is known, and along what their surface moves."""
+
+    facets: list[int]
+    normal: Point
+    provenance: Provenance
+    slips: Rows
+
+
+def _sets_by_looking(
+    geometry: PartGeometry, p_PF: Point, touched: Indices, patches: list[_Patch], name: str
+) -> tuple[tuple[int, ...], ...]:
+    """Clauses over patches where edges do not settle it: neither convex nor concave throughout, or several solids.
+
+    Every facet is looked at by itself, then counts as its patch.
+    """
+    owner = [index for index, patch in enumerate(patches) for _ in patch.facets]
+    normals = np.array([geometry.facets[facet].normal for patch in patches for facet in patch.facets])
+    if len(patches) == 1:
+        owner, normals = [0], patches[0].normal[None]
+    found = sets_by_looking(geometry, p_PF, touched, units_of(normals), name)
+    return tuple(dict.fromkeys(tuple(dict.fromkeys(owner[index] for index in chosen)) for chosen in found))
 
 
 def facets_at(geometry: PartGeometry, touched: Indices) -> Indices:
@@ -101,33 +139,50 @@ def facets_at(geometry: PartGeometry, touched: Indices) -> Indices:
 
 
 def _patches(geometry: PartGeometry, facets: Indices) -> list[list[int]]:
-    """Facets grouped to smooth patches: linked where at least one of two smooth neighbours is a strip."""
+    """Facets grouped to smooth patches: of one round surface; or smooth neighbours of which one is a strip."""
     patches = [[int(facet)] for facet in facets]
-    for first in facets.tolist():
-        for second, angle in geometry.facets[first].angles.items():
-            kinds = {geometry.facets[first].provenance.kind, geometry.facets[second].provenance.kind}
-            if second in facets and abs(angle) < SMOOTH_ANGLE and "approximate" in kinds:
-                one, other = (next(p for p in patches if f in p) for f in (first, second))
-                if one is not other:
-                    one += other
-                    patches.remove(other)
+    surfaces = {facet: geometry.surface_of_facet(facet) for facet in facets.tolist()}
+    kinds = {facet: geometry.provenance_of(facet).kind for facet in facets.tolist()}
+    for first, second in combinations(facets.tolist(), 2):
+        angle = geometry.facets[first].angles.get(second)
+        if surfaces[first] is not None or surfaces[second] is not None:
+            together = surfaces[first] is surfaces[second]
+        else:
+            together = (
+                angle is not None and abs(angle) < SMOOTH_ANGLE and "approximate" in (kinds[first], kinds[second])
+            )
+        if together:
+            one, other = (next(patch for patch in patches if facet in patch) for facet in (first, second))
+            if one is not other:
+                one += other
+                patches.remove(other)
     return [sorted(patch) for patch in patches]
 
 
-def _patch_normal(geometry: PartGeometry, patch: list[int], name: str) -> Point:
-    """The facet's own normal, or the normalised mean of unit normals."""
-    if len(patch) == 1:
-        return geometry.facets[patch[0]].normal
-    mean = units_of(np.array([geometry.facets[facet].normal for facet in patch])).sum(axis=0)
+def _patch(geometry: PartGeometry, facets: list[int], p_PC: Point, name: str) -> _Patch:
+    """Of a round surface its normal; of one facet its own; of strips the normalised mean, off by up to their spread."""
+    surface = geometry.surface_of_facet(facets[0])
+    if surface is not None:
+        return _Patch(facets, surface.normal(p_PC), geometry.provenance_of(facets[0]), surface.slips())
+    origins = [geometry.provenance_of(facet) for facet in facets]
+    if len(facets) == 1:
+        normal = geometry.facets[facets[0]].normal
+        slips = plane_slips(normal, p_PC) if origins[0].kind == "exact" else np.zeros((0, 6))
+        return _Patch(facets, normal, origins[0], slips)
+    units = units_of(np.array([geometry.facets[facet].normal for facet in facets]))
+    mean = units.sum(axis=0)
     length = float(np.linalg.norm(mean))
-    if length < len(patch) * np.cos(SMOOTH_ANGLE):
+    if length < len(facets) * np.cos(SMOOTH_ANGLE):
         raise UnsupportedError(f"{geometry.name!r}: {name} is the tip of a curved surface, which has no normal there")
-    return mean / length
+    mean /= length
+    spread = float(np.arctan2(np.linalg.norm(np.cross(units, mean), axis=1), units @ mean).max())
+    kind = "approximate" if any(origin.kind == "approximate" for origin in origins) else "exact"
+    error = max(spread, *(origin.normal_error for origin in origins))
+    return _Patch(facets, mean, Provenance(kind, error), np.zeros((0, 6)))
 
 
-def _largest_angle(normal: Point, geometry: PartGeometry, patch: list[int]) -> float:
-    """Between the normal of a patch and those of its facets [rad]."""
-    if len(patch) == 1:
-        return 0.0
-    units = units_of(np.array([geometry.facets[facet].normal for facet in patch]))
-    return float(np.arctan2(np.linalg.norm(np.cross(units, normal), axis=1), units @ normal).max())
+def plane_slips(normal: Point, p_PC: Point) -> Rows:
+    """The motions [v; w] that move a plane along itself, one a row: two ways along it, and turning about its normal."""
+    unit = normal / np.linalg.norm(normal)
+    along = np.hstack([np.array(tangents(unit)), np.zeros((2, 3))])
+    return np.vstack([along, np.concatenate([np.cross(p_PC, unit), unit])])

@@ -10,8 +10,10 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import read_only
+from fixture_design.contacts import Provenance
 from fixture_design.geometry.distance import DistanceField
 from fixture_design.geometry.facets import Facet, Facets, facet_notes, facets_of
+from fixture_design.geometry.flats import judged_again
 from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.planes import neighbours
 from fixture_design.geometry.shapes import (
@@ -23,6 +25,8 @@ from fixture_design.geometry.shapes import (
     Vector3,
     Vertices,
 )
+from fixture_design.geometry.smooth_regions import smooth_surfaces
+from fixture_design.geometry.smooth_surface import SmoothSurface
 from fixture_design.geometry.soundness import shells
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
@@ -102,6 +106,32 @@ class PartGeometry:
     def facets(self) -> tuple[Facet, ...]:
         """The plane faces, in the order of their names."""
         return self._facets.facets
+
+    @cached_property
+    def smooth_surfaces(self) -> tuple[SmoothSurface, ...]:
+        """The round surfaces that facets stand for, in the order of their names; none of a faceted part."""
+        if self.faceted:
+            return ()
+        noise = max(float(self.rounding.max()), self._facets.noise)
+        return smooth_surfaces(self.facets, self.vertices, self.triangles, noise)
+
+    @cached_property
+    def _surface_of_facet(self) -> dict[int, SmoothSurface]:
+        return {int(facet): surface for surface in self.smooth_surfaces for facet in surface.facets}
+
+    @cached_property
+    def _judged_again(self) -> dict[int, Provenance]:
+        return judged_again(self.facets, self._surface_of_facet, self.vertices, self.triangles)
+
+    def surface_of_facet(self, facet: int) -> SmoothSurface | None:
+        """The round surface that a facet stands for, if it is known."""
+        flat = self.facets[facet].provenance.kind == "exact"
+        return None if flat else self._surface_of_facet.get(facet)
+
+    def provenance_of(self, facet: int) -> Provenance:
+        """Of a facet's normal, or of its round surface's; such surfaces are looked for when first asked."""
+        own = self.facets[facet].provenance
+        return own if own.kind == "exact" or self.faceted else self._judged_again[facet]
 
     @cached_property
     def facet_of_triangle(self) -> OfTriangle:

@@ -26,8 +26,9 @@ OfEdge = Int[np.ndarray, "n"]
 PolygonVertices = Float[np.ndarray, "n 2"]
 #: A point or vector in space.
 Vector3 = Float[np.ndarray, "3"]
-#: Directions or points in space, as many as there are, and a selection of them.
+#: Directions or points in space, as many as there are, one number for each, and a selection of them.
 Directions = Float[np.ndarray, "n 3"]
+PerPoint = Float[np.ndarray, "n"]
 DirectionMask = Bool[np.ndarray, "n"]
 #: The normals of k facets that meet.
 Normals = Float[np.ndarray, "k 3"]

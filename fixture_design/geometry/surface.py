@@ -64,7 +64,16 @@ class SolidSurface:
         return self.geometry.on_edge
 
     def nearest(self, p_PQ: Point) -> tuple[float, Point]:
-        return self.geometry.surface.at(p_PQ)
+        """As Drake measures it to the facets; where these stand for a round surface, to that, if it is nearer."""
+        distance, p_PF = self.geometry.surface.at(p_PQ)
+        touched = touched_triangles(self.geometry, p_PF, self.precision)
+        surfaces = {self.geometry.surface_of_facet(f) for f in facets_at(self.geometry, touched).tolist()}
+        surface = next(iter(surfaces)) if len(surfaces) == 1 else None
+        if surface is None:
+            return distance, p_PF
+        p_PC = surface.project(p_PQ)
+        own = surface.distance(p_PQ)
+        return (own if abs(own) < abs(distance) else distance), p_PC
 
     def local(self, p_PC: Point) -> LocalSurface:
         return local_surface(self.geometry, p_PC)
@@ -75,12 +84,15 @@ class SolidSurface:
         )
 
     def slack(self, surface: LocalSurface) -> float:
-        """Of a strip of width w, tilted by e against its neighbours: w sin e.
+        """Of a round surface twice the depth of its strips; of other strips of width w, tilted by e: w sin e.
 
         In a bore of radius R, cut to strips w = R e wide, a ball of radius r that touches a strip anywhere cuts its
         neighbours by at most w^2 / (8 (R - r)), which is less unless the ball all but fills the bore.
         """
         if surface.provenance.kind == "exact":
             return 0.0
+        if surface.provenance.kind == "fitted":
+            found = [self.geometry.surface_of_facet(facet) for facet in surface.facets]
+            return max(2 * known.sagitta for known in found if known is not None)
         width = max(self.geometry.facets[facet].width for facet in surface.facets)
         return width * float(np.sin(min(surface.provenance.normal_error, np.pi / 2)))

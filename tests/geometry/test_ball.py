@@ -89,7 +89,7 @@ def test_ball_in_a_tessellated_bore_fits_if_it_fits_the_true_bore(tmp_path: Path
         radius = apothem / np.cos(angle - np.pi / 24)
         for size in (0.002, 0.008):
             contact = ball(geometry, [radius * np.cos(angle), radius * np.sin(angle), 0.015], size)
-            assert contact.provenance.kind == "approximate"
+            assert contact.provenance.kind == "fitted"
     with pytest.raises(GeometryError, match="cuts"):
         ball(geometry, [apothem * np.cos(np.pi / 24), apothem * np.sin(np.pi / 24), 0.015], 0.015)
 

@@ -177,10 +177,17 @@ def test_shaft_has_one_normal_on_strips_and_between_them(tmp_path: Path, count: 
         contact = touch(geometry, [radius * np.cos(angle), radius * np.sin(angle), 0.01])
         ((normal,),) = contact.clauses
         true = np.array([np.cos(angle), np.sin(angle), 0])
-        off = np.arccos(np.clip(unit(normal) @ true, -1, 1))
-        assert off <= contact.provenance.normal_error
-        assert contact.provenance.kind == "approximate"
-    assert np.degrees(off) < 360 / count
+        assert contact.provenance.kind == "fitted"
+        assert np.linalg.norm(unit(normal) - true) <= contact.provenance.normal_error < 1e-12
+        assert contact.feature == "cylinder 1"
+        # on the shaft, not on the chord
+        assert np.hypot(*contact.point[:2]) == pytest.approx(0.01, rel=1e-12)
+
+
+def test_a_place_on_the_true_shaft_is_on_its_surface_though_off_the_mesh(tmp_path: Path) -> None:
+    geometry = loaded(tmp_path, prism(circle(0.01, 16), 0.03))
+    contact = touch(geometry, [0.01 * np.cos(np.pi / 16), 0.01 * np.sin(np.pi / 16), 0.01])
+    assert contact.distance == pytest.approx(0, abs=1e-12)
 
 
 def test_rim_of_a_shaft_is_an_or_of_two_and_of_a_bore_too(tmp_path: Path) -> None:

@@ -1,0 +1,194 @@
+"""Least-squares fits of round surfaces to the vertices of facets.
+
+A mesh of a round surface has its vertices on it, up to rounding; its facets' normals are those of chords and only
+serve for a first guess. From there Gauss-Newton minimises the distances of the vertices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from fixture_design.arrays import Point, Vector
+from fixture_design.contacts.friction import tangents
+from fixture_design.geometry.shapes import Directions, FacetVectors, Vector3
+from fixture_design.geometry.smooth_surface import RoundKind, RoundShape
+
+#: How far off points of size one may still be before each step of Gauss-Newton, and the step that is none [-].
+_OFF_AFTER_STEPS, _CONVERGED = (0.2, 0.1, 3e-2, 1e-2, 1e-3, 1e-3, 1e-3, 1e-3), 1e-11
+#: Steps of numerical differences of normals, and singular values that count as none, for points of size one [-].
+_DIFFERENCE, _NO_SAY = 1e-6, 1e-7
+_TINY = 1e-300
+#: Fits with a radius beyond so many times the points' size are planes [-].
+_FLAT = 50.0
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """What a fit is made to: vertices, shape (n, 3), and the unit normals and middles of facets, shape (f, 3)."""
+
+    points: Directions
+    normals: FacetVectors
+    middles: FacetVectors
+
+
+def fitted(kind: RoundKind, patch: Patch) -> RoundShape | None:
+    """The surface of a kind that is nearest to the patch's points; None where a guess or the fit fails.
+
+    Whether it is near enough is for the caller to judge, by its offsets.
+    """
+    center = patch.points.mean(axis=0)
+    size = float(np.linalg.norm(np.ptp(patch.points, axis=0)))
+    unit = Patch((patch.points - center) / size, patch.normals, (patch.middles - center) / size)
+    guess = _GUESSES[kind](unit)
+    shape = None if guess is None else refined(guess, unit.points)
+    if shape is None:
+        return None
+    radius = shape.radius if kind == "cone" else shape.radius * size
+    return RoundShape(kind, shape.point * size + center, shape.axis, radius, shape.ring * size)
+
+
+def refined(shape: RoundShape, points: Directions) -> RoundShape | None:
+    """Gauss-Newton on the distances of the points, which have size one; None if it leaves what makes sense.
+
+    A guess of the right kind is near; what is still off after a few steps is of another kind.
+    """
+    for limit in _OFF_AFTER_STEPS:
+        offsets = shape.offsets(points)
+        if np.abs(offsets).max() > limit:
+            return None
+        step = np.linalg.lstsq(jacobian(shape, points), -offsets, rcond=_NO_SAY)[0]
+        shape = _moved(shape, step)
+        if not _sensible(shape):
+            return None
+        if np.abs(step).max() < _CONVERGED:
+            break
+    return shape
+
+
+def jacobian(shape: RoundShape, points: Directions) -> Float[np.ndarray, "n k"]:
+    """Derivatives of the points' offsets by the shape's parameters: point, two tilts of the axis, radius, ring.
+
+    Moving or turning the shape is moving the points the other way, and an offset grows along its direction.
+    """
+    away, out = points - shape.point, shape.directions(points)
+    tilts = [np.cross(shape.axis, tangent) for tangent in tangents(shape.axis)]
+    columns = [*(-out.T), *(-np.einsum("ij,ij->i", out, np.cross(tilt, away)) for tilt in tilts)]
+    along = away @ shape.axis
+    across = away - np.outer(along, shape.axis)
+    lengths = np.linalg.norm(across, axis=1)
+    if shape.kind == "cone":
+        columns.append(-lengths * np.sin(shape.radius) - along * np.cos(shape.radius))
+    else:
+        columns.append(-np.ones(len(points)))
+    if shape.kind == "torus":
+        columns.append(-np.einsum("ij,ij->i", out, across) / np.maximum(lengths, _TINY))
+    return np.column_stack(columns)
+
+
+def normal_error(shape: RoundShape, points: Directions, where: FacetVectors, off: float) -> float:
+    """How far normals at some places of a fitted surface may be off, if each vertex is off by ``off`` [m, rad].
+
+    Three standard deviations: the parameters' covariance from the fit, carried over to the normals.
+    """
+    center, size = points.mean(axis=0), float(np.linalg.norm(np.ptp(points, axis=0)))
+    radius = shape.radius if shape.kind == "cone" else shape.radius / size
+    unit = RoundShape(shape.kind, (shape.point - center) / size, shape.axis, radius, shape.ring / size)
+    _, values, right = np.linalg.svd(jacobian(unit, (points - center) / size), full_matrices=False)
+    counted = values > _NO_SAY * values[0]
+    ways = right[counted] / values[counted, None] * (3 * off / size)
+    places = (where - center) / size
+    # a step that is small against the shape, whatever the error is
+    reach = [_DIFFERENCE / max(float(np.abs(way).max()), 1e-300) for way in ways]
+    turns = [
+        np.linalg.norm(_moved(unit, way * r).directions(places) - unit.directions(places), axis=1) / r
+        for way, r in zip(ways, reach, strict=True)
+    ]
+    return float(np.linalg.norm(turns, axis=0).max())
+
+
+def _moved(shape: RoundShape, step: Vector) -> RoundShape:
+    first, second = tangents(shape.axis)
+    axis = shape.axis + step[3] * first + step[4] * second
+    ring = shape.ring + (step[6] if len(step) > 6 else 0.0)
+    return RoundShape(
+        shape.kind, shape.point + step[:3], axis / np.linalg.norm(axis), shape.radius + float(step[5]), float(ring)
+    )
+
+
+def _sensible(shape: RoundShape) -> bool:
+    if shape.kind == "cone":
+        return bool(1e-3 < shape.radius < np.pi / 2 - 1e-3 and np.abs(shape.point).max() < _FLAT)
+    return bool(0 < shape.radius < _FLAT and 0 <= shape.ring < _FLAT and np.abs(shape.point).max() < 2 * _FLAT)
+
+
+def _sphere(patch: Patch) -> RoundShape | None:
+    """|x|^2 = 2 c . x + (R^2 - |c|^2), linear in c and the bracket."""
+    found = _ball(patch.points)
+    return None if found is None else RoundShape("sphere", found[0], np.array([0.0, 0.0, 1.0]), found[1])
+
+
+def _cylinder(patch: Patch) -> RoundShape | None:
+    """The axis is square to all normals; the vertices seen along it lie on a circle."""
+    axis = np.linalg.svd(patch.normals)[2][-1]
+    return _around(patch, axis)
+
+
+def _around(patch: Patch, axis: Vector3) -> RoundShape | None:
+    frame = np.array(tangents(axis))
+    found = _ball(patch.points @ frame.T)
+    return None if found is None else RoundShape("cylinder", found[0] @ frame, axis, found[1])
+
+
+def _cone(patch: Patch) -> RoundShape | None:
+    """Normals make one angle with the axis; the facets' planes meet in the apex."""
+    axis = np.linalg.svd(patch.normals - patch.normals.mean(axis=0))[2][-1]
+    heights = np.einsum("ij,ij->i", patch.normals, patch.middles)
+    apex = np.linalg.lstsq(patch.normals, heights, rcond=_NO_SAY)[0]
+    away = patch.points - apex
+    along = away @ axis
+    if along.sum() < 0:
+        axis, along = -axis, -along
+    across = np.linalg.norm(away - np.outer(along, axis), axis=1)
+    guess = RoundShape("cone", apex, axis, float(np.arctan2(across.sum(), along.sum())))
+    return guess if _sensible(guess) else None
+
+
+def _torus(patch: Patch) -> RoundShape | None:
+    """All normals meet the axis: m . a + n . (a's moment) = 0, with m = x X n; then a circle in the half plane."""
+    rows = np.hstack([np.cross(patch.middles, patch.normals), patch.normals])
+    line = np.linalg.svd(rows)[2][-1]
+    length = float(np.linalg.norm(line[:3]))
+    if length < _NO_SAY:
+        return None
+    axis, moment = line[:3] / length, line[3:] / length
+    point = np.cross(axis, moment)
+    away = patch.points - point
+    along = away @ axis
+    across = np.linalg.norm(away - np.outer(along, axis), axis=1)
+    found = _ball(np.column_stack([across, along]))
+    if found is None:
+        return None
+    (ring, height), radius = found
+    guess = RoundShape("torus", point + height * axis, axis, radius, float(ring))
+    return guess if _sensible(guess) else None
+
+
+def _ball(points: Float[np.ndarray, "n p"]) -> tuple[Point, float] | None:
+    """Centre and radius of the circle or sphere through points, by least squares; None if they are in a line."""
+    rows = np.column_stack([2 * points, np.ones(len(points))])
+    solution, _, rank, _ = np.linalg.lstsq(rows, np.sum(points**2, axis=1), rcond=_NO_SAY)
+    center = solution[:-1]
+    square = float(solution[-1] + center @ center)
+    return (center, float(np.sqrt(square))) if rank == rows.shape[1] and square > 0 else None
+
+
+_GUESSES: dict[RoundKind, Callable[[Patch], RoundShape | None]] = {
+    "cylinder": _cylinder,
+    "cone": _cone,
+    "sphere": _sphere,
+    "torus": _torus,
+}

@@ -1,0 +1,304 @@
+"""Which facets stand for one round surface: small patches are fitted, and grow over neighbours that lie on the fit.
+
+A facet lies on a surface if all its corners do, up to the noise of the vertices, if it faces the same way, and if it is
+no coarser than the others: a flat cut into a shaft has its corners on the shaft too, but its middle is deeper.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from fixture_design.arrays import Indices
+from fixture_design.geometry.facets import Facet
+from fixture_design.geometry.round_fits import Patch, fitted, normal_error
+from fixture_design.geometry.shapes import Directions, FacetVectors, OfFacet, Triangles, Vertices
+from fixture_design.geometry.smooth_surface import RoundKind, RoundShape, SmoothSurface
+from fixture_design.tolerances import ON_EDGE_ROUNDINGS, ROUND_FIT, SMOOTH_ANGLE
+
+#: Facets and vertices that a surface must have, so that it is no accident that they fit: three bevels between two flats
+#: always do, if they are symmetric.
+_FEWEST: dict[RoundKind, tuple[int, int]] = {"cylinder": (4, 10), "cone": (4, 9), "sphere": (6, 8), "torus": (9, 12)}
+#: A facet's middle may be this many times as deep under the surface as those of the others.
+_DEEPER = 2.5
+#: Corners of one surface may be off another by this many tolerances, for both to be tried as one [-].
+_SAME = 100.0
+#: Corners on the surface that make up for others of the same facet that lie on chords.
+_FEWEST_ON = 4
+#: Neighbours of a facet that are combined to patches, and facets in the largest patch.
+_MOST_NEIGHBOURS, _LARGEST_PATCH = 6, 40
+#: Seeds that may fail among facets that hang together smoothly, before the rest of them is given up.
+_MOST_FAILURES = 25
+#: Angle between a facet's normal and those of the surface at its corners, at most [rad]: half a coarse step.
+_STEP = 0.7 * SMOOTH_ANGLE
+#: A surface whose normals are known no better than this is not known [rad].
+_VAGUE = 1e-2
+
+
+def smooth_surfaces(
+    facets: Sequence[Facet], vertices: Vertices, triangles: Triangles, noise: float
+) -> tuple[SmoothSurface, ...]:
+    """The round surfaces of a part, named by kind in the order of their places.
+
+    Args:
+        facets: those whose provenance is approximate may stand for one.
+        noise: how well vertices are known [m].
+    """
+    search = _Search.of(facets, vertices, triangles, noise)
+    for seed in search.seeds():
+        search.try_seed(seed)
+    search.merge()
+    found = sorted(search.found, key=lambda region: _order(region, search.size))
+    counts: dict[str, int] = {}
+    surfaces = []
+    for shape, members in found:
+        counts[shape.kind] = counts.get(shape.kind, 0) + 1
+        surfaces.append(search.surface(f"{shape.kind} {counts[shape.kind]}", shape, members))
+    return tuple(surface for surface in surfaces if surface.normal_error <= _VAGUE)
+
+
+def _order(region: tuple[RoundShape, list[int]], size: float) -> tuple[str, list[float]]:
+    """Rounded, so that names do not hang on the last bit."""
+    shape, members = region
+    place = np.array([*shape.point, shape.radius]) / size
+    return shape.kind, [*np.round([*place, *shape.axis], 6).tolist(), float(members[0])]
+
+
+def _one_way(shape: RoundShape) -> RoundShape:
+    """The axis so that its largest component is positive; a cone's runs into the cone."""
+    largest = shape.axis[int(np.argmax(np.abs(shape.axis) > np.abs(shape.axis).max() - 1e-6))]
+    return shape if shape.kind == "cone" or largest > 0 else replace(shape, axis=-shape.axis)
+
+
+@dataclass(eq=False)
+class _Search:
+    """The facets with what is asked of them again and again, and the surfaces found so far."""
+
+    vertices: Vertices
+    corners: list[Indices]
+    corner_counts: OfFacet
+    units: FacetVectors
+    middles: FacetVectors
+    areas: np.ndarray
+    smooth: list[dict[int, float]]
+    free: set[int]
+    tolerance: float
+    noise: float
+    size: float
+    found: list[tuple[RoundShape, list[int]]] = field(default_factory=list)
+    failures: Counter[int] = field(default_factory=Counter)
+
+    @cached_property
+    def component(self) -> dict[int, int]:
+        """For each facet that may stand for a round surface the first of those that hang together with it smoothly."""
+        owner: dict[int, int] = {}
+        for facet in sorted(self.free):
+            if facet not in owner:
+                owner |= dict.fromkeys(self._linked(facet, self.free), facet)
+        return owner
+
+    @classmethod
+    def of(cls, facets: Sequence[Facet], vertices: Vertices, triangles: Triangles, noise: float) -> _Search:
+        candidates = {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate"}
+        normals = np.array([facet.normal for facet in facets])
+        areas = np.linalg.norm(normals, axis=1)
+        smooth = [
+            {o: angle for o, angle in facet.angles.items() if o in candidates and abs(angle) < SMOOTH_ANGLE}
+            for facet in facets
+        ]
+        corners = [np.unique(triangles[facet.triangles]) for facet in facets]
+        size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+        return cls(
+            vertices,
+            corners,
+            np.array([len(mine) for mine in corners]),
+            normals / areas[:, None],
+            np.array([facet.centroid for facet in facets]),
+            areas,
+            smooth,
+            candidates,
+            ON_EDGE_ROUNDINGS * noise + ROUND_FIT * size,
+            noise,
+            size,
+        )
+
+    def seeds(self) -> Iterator[int]:
+        """Facets that are still free, the largest first."""
+        for seed in sorted(self.free, key=lambda facet: (-self.areas[facet], facet)):
+            if seed in self.free and self.failures[self.component[seed]] < _MOST_FAILURES:
+                yield seed
+
+    def try_seed(self, seed: int) -> None:
+        """Look for a surface that the seed is on; if there is one, its facets are not free any more."""
+        best: tuple[RoundShape, list[int]] | None = None
+        for patch, kinds in self._patches(seed):
+            for kind in kinds:
+                region = self._region(kind, patch)
+                if region is not None and (best is None or len(region[1]) > len(best[1])):
+                    best = region
+            if best is not None and self._complete(best[1]):
+                break
+        if best is None:
+            self.failures[self.component[seed]] += 1
+            return
+        self.found.append((_one_way(best[0]), best[1]))
+        self.free -= set(best[1])
+
+    def merge(self) -> None:
+        """Make one of surfaces that are one: a slot cuts a bore in two, and the halves have no facet in common."""
+        kept: list[tuple[RoundShape, list[int]]] = []
+        for shape, members in self.found:
+            for index, (other, others) in enumerate(kept):
+                if other.kind == shape.kind and self._hollow(other, others) == self._hollow(shape, members):
+                    both = sorted(others + members)
+                    points = np.vstack([self._points_on(shape, members), self._points_on(other, others)])
+                    near = np.abs(other.offsets(points)).max() <= _SAME * self.tolerance
+                    if near and (one := self._fit(shape.kind, both, points)) is not None:
+                        kept[index] = (_one_way(one), both)
+                        break
+            else:
+                kept.append((shape, members))
+        self.found = kept
+
+    def _complete(self, members: list[int]) -> bool:
+        """Whether the surface ends all around: no free facet goes on smoothly, as those of a torus do beside a band."""
+        inside = set(members)
+        return not any(o in self.free and o not in inside for facet in members for o in self.smooth[facet])
+
+    def surface(self, name: str, shape: RoundShape, members: list[int]) -> SmoothSurface:
+        points, middles = self._points_on(shape, members), self.middles[members]
+        error = float(np.abs(shape.offsets(points)).max())
+        off = normal_error(shape, points, middles, max(error, self.noise))
+        return SmoothSurface(
+            name,
+            shape,
+            self._hollow(shape, members),
+            np.array(members, dtype=np.int64),
+            error,
+            off,
+            float(np.abs(shape.offsets(middles)).max()),
+        )
+
+    def _patches(self, seed: int) -> Iterator[tuple[list[int], tuple[RoundKind, ...]]]:
+        """A facet with two of its neighbours, then with all around it, wider and wider; and what to try on each.
+
+        Edges of cylinders, cones and spheres are all convex or all concave; only a torus may have both.
+        """
+        around = {facet: angle for facet, angle in self.smooth[seed].items() if facet in self.free}
+        for first, second in combinations(list(around)[:_MOST_NEIGHBOURS], 2):
+            if around[first] * around[second] > 0:
+                yield [seed, first, second], ("cylinder", "cone")
+        before = 0
+        for steps in (1, 2, 3):
+            patch = self._around(seed, steps)
+            if len(patch) > _LARGEST_PATCH or len(patch) == before:
+                return
+            before = len(patch)
+            angles = [self.smooth[one][other] for one in patch for other in self.smooth[one] if other in patch]
+            one_way = min(angles, default=0) * max(angles, default=0) > 0
+            yield patch, ("cylinder", "cone", "sphere", "torus") if one_way else ("torus",)
+
+    def _around(self, seed: int, steps: int) -> list[int]:
+        patch, edge = [seed], [seed]
+        for _ in range(steps):
+            edge = sorted({o for facet in edge for o in self.smooth[facet] if o in self.free} - set(patch))
+            patch += edge
+        return patch
+
+    def _region(self, kind: RoundKind, patch: list[int]) -> tuple[RoundShape, list[int]] | None:
+        """A surface fitted to a patch and all facets that lie on it, if they are enough to believe it."""
+        shape, members = self._fit(kind, patch, self._points(patch)), patch
+        for _ in range(3):
+            if shape is None:
+                return None
+            grown = self._grown(shape, patch[0])
+            if grown == members:
+                break
+            if len(grown) < len(patch):
+                return None
+            members = grown
+            shape = self._fit(kind, members, self._points_on(shape, members))
+        if shape is None or len(members) < _FEWEST[kind][0]:
+            return None
+        return (shape, members) if len(self._points_on(shape, members)) >= _FEWEST[kind][1] else None
+
+    def _fit(self, kind: RoundKind, members: list[int], points: Directions) -> RoundShape | None:
+        if len(points) < 4 or (kind == "cylinder" and not self._parallel(members)):
+            return None
+        shape = fitted(kind, Patch(points, self.units[members], self.middles[members]))
+        if shape is None or np.abs(shape.offsets(points)).max() > self.tolerance:
+            return None
+        return shape
+
+    def _parallel(self, members: list[int]) -> bool:
+        """Whether the normals are square to one direction, as far as a first guess must be."""
+        return bool(np.linalg.svd(self.units[members], compute_uv=False)[-1] < np.sin(SMOOTH_ANGLE) / 10)
+
+    def _grown(self, shape: RoundShape, seed: int) -> list[int]:
+        """The free facets that lie on the surface and hang together with the seed.
+
+        Looked at are those within some steps of the seed, all at once; where that is not enough, four times as many.
+        """
+        deepest = _DEEPER * abs(float(shape.offsets(self.middles[seed][None])[0])) + self.tolerance
+        steps = 4
+        while True:
+            near, whole = self._within(seed, steps)
+            on = {facet for facet, lies in zip(near, self._lie_on(shape, near, deepest), strict=True) if lies}
+            members = self._linked(seed, on)
+            if whole or not any(o in self.free and o not in near for facet in members for o in self.smooth[facet]):
+                return sorted(members)
+            steps *= 4
+
+    def _within(self, seed: int, steps: int) -> tuple[dict[int, None], bool]:
+        """Free facets at most so many steps from the seed, and whether that is all there are."""
+        seen, edge = {seed: None}, [seed]
+        for _ in range(steps):
+            edge = [o for o in {o for facet in edge for o in self.smooth[facet]} if o in self.free and o not in seen]
+            seen |= dict.fromkeys(edge)
+            if not edge:
+                return seen, True
+        return seen, False
+
+    def _linked(self, seed: int, allowed: set[int]) -> list[int]:
+        """Those of some facets that hang together with the seed, if that is one of them."""
+        members, waiting = {seed} & allowed, list({seed} & allowed)
+        while waiting:
+            new = [o for o in self.smooth[waiting.pop()] if o in allowed and o not in members]
+            members.update(new)
+            waiting += new
+        return list(members)
+
+    def _lie_on(self, shape: RoundShape, near: Iterable[int], deepest: float) -> list[bool]:
+        """Whether facets lie on a surface: all corners on it, or some on its chords, where another feature cut them."""
+        facets = list(near)
+        counts = self.corner_counts[facets]
+        starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        owner = np.repeat(np.arange(len(facets)), counts)
+        corners = self.vertices[np.concatenate([self.corners[facet] for facet in facets])]
+        offsets = np.abs(shape.offsets(corners))
+        on = np.add.reduceat(offsets <= self.tolerance, starts)
+        fits = (on == counts) | ((on >= _FEWEST_ON) & (np.maximum.reduceat(offsets, starts) <= deepest))
+        fits &= np.abs(shape.offsets(self.middles[facets])) <= deepest
+        out = shape.directions(corners)
+        sense = np.where(shape.directions(self.middles[facets][:1])[0] @ self.units[facets[0]] < 0, -1.0, 1.0)
+        facing = sense * np.einsum("ij,ij->i", out, self.units[facets][owner])
+        # at the apex of a cone there is no normal to compare with
+        facing = np.where(out.any(axis=1), facing, 1.0)
+        return (fits & (np.minimum.reduceat(facing, starts) >= np.cos(_STEP))).tolist()
+
+    def _hollow(self, shape: RoundShape, members: list[int]) -> bool:
+        facing = np.einsum("ij,ij->i", shape.directions(self.middles[members]), self.units[members])
+        return bool(facing @ self.areas[members] < 0)
+
+    def _points(self, members: Sequence[int]) -> Directions:
+        return self.vertices[np.unique(np.concatenate([self.corners[facet] for facet in members]))]
+
+    def _points_on(self, shape: RoundShape, members: Sequence[int]) -> Directions:
+        """Their corners, without those on chords."""
+        points = self._points(members)
+        return points[np.abs(shape.offsets(points)) <= self.tolerance]
