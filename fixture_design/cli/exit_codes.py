@@ -17,6 +17,7 @@ class ExitCode(IntEnum):
     UNDECIDED = 3
     INTERNAL_ERROR = 4
     INTERRUPTED = 130
+    BROKEN_PIPE = 141
 
 
 _WORST_FIRST = (

@@ -11,8 +11,15 @@ from fixture_design.errors import InputError
 
 
 def say(message: str) -> None:
-    """One line on stderr, with the program's name."""
-    typer.echo(f"fixture-design: {message}", err=True)
+    """One line on stderr, with the program's name; characters that could steer a terminal are escaped."""
+    typer.echo(f"fixture-design: {printable(message)}", err=True)
+
+
+def printable(text: str) -> str:
+    """The text with control characters, line ends and lone surrogates as escapes."""
+    return "".join(
+        character if character.isprintable() else character.encode("unicode_escape").decode() for character in text
+    )
 
 
 def met_in(path: Path, error: InputError) -> str:

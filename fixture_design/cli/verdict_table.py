@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -22,6 +23,12 @@ _PAPER_WIDTH = 120
 def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
     """Print one verdict; a group that has another one's contacts refers to it instead of repeating it."""
     console = console or _console()
+    with console.capture() as printed:  # rich would end the process on a broken pipe, with the code of a failure
+        _print(verdict, console)
+    typer.echo(printed.get(), nl=False)
+
+
+def _print(verdict: Verdict, console: Console) -> None:
     console.print(
         f"[bold]{escape(verdict.name)}[/]: {verdict.space}, {len(verdict.contacts)} contacts", highlight=False
     )

@@ -34,8 +34,8 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
             expected=f"one of {', '.join(MESH_ENDINGS)}",
             **where,
         )
-    if not file.is_file():
-        raise FileFormatError(f"there is no mesh file {str(file)!r}", expected="an existing file", **where)
+    if problem := unreadable(file):
+        raise FileFormatError(f"{problem}: {str(file)!r:.200}", expected="an existing file", **where)
     import trimesh
 
     try:
@@ -46,6 +46,23 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
         kind = file.suffix[1:].upper()
         raise FileFormatError(f"{file.name} cannot be read as {kind}", found=_first_line(cause), **where) from cause
     return vertices.reshape(-1, 3), triangles.reshape(-1, 3)
+
+
+def unreadable(file: Path, kind: str = "mesh file") -> str | None:
+    """Why a file cannot be read, None if it can: missing, a folder, not permitted, a name that no file can have."""
+    try:
+        if file.is_dir():
+            return "this is a folder"
+        if file.exists() and not file.is_file():
+            return "this is no regular file"
+        with file.open("rb"):
+            return None
+    except FileNotFoundError:
+        return f"there is no {kind}"
+    except OSError as cause:
+        return f"the {kind} cannot be read ({cause.strerror or cause})"
+    except ValueError as cause:  # a NUL in the name
+        return f"the {kind} cannot be read ({cause})"
 
 
 def _first_line(cause: Exception) -> str:

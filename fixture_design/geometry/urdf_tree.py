@@ -11,6 +11,7 @@ import numpy as np
 
 from fixture_design.arrays import Point
 from fixture_design.errors import FileFormatError, UnsupportedError
+from fixture_design.geometry.mesh_file import unreadable
 from fixture_design.layout import Pose
 
 
@@ -55,8 +56,8 @@ def robot_of(file: Path) -> ElementTree.Element:
     Raises:
         FileFormatError: no file, not XML, not URDF.  UnsupportedError: xacro.
     """
-    if not file.is_file():
-        raise FileFormatError("there is no such file", source=file, expected="a URDF file")
+    if problem := unreadable(file, "such file"):
+        raise FileFormatError(problem, source=file, expected="a URDF file")
     try:
         robot = ElementTree.parse(file).getroot()
     except ElementTree.ParseError as cause:
@@ -65,6 +66,8 @@ def robot_of(file: Path) -> ElementTree.Element:
         raise FileFormatError(
             "not XML", source=file, place=f"line {line}, column {column + 1}", found=found, expected="a URDF file"
         ) from cause
+    except (LookupError, ValueError) as cause:  # an encoding that Python or its XML parser does not know
+        raise FileFormatError("not XML", source=file, place="line 1", found=str(cause), expected="UTF-8") from cause
     if robot.tag != "robot":
         raise FileFormatError("not URDF", source=file, found=f"<{robot.tag}>", expected="<robot> as the root element")
     if any("xacro" in str(element.tag) for element in robot.iter()):

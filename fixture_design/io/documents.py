@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from fixture_design.errors import FileFormatError
 from fixture_design.io.json_reader import parse_json
-from fixture_design.io.places import Place
+from fixture_design.io.places import KeyPath, Place
 from fixture_design.io.yaml_reader import parse_yaml
 
 #: Characters that no text file has.
 _NOT_TEXT = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,27 @@ def as_document(values: object, place: Place, source: str) -> Document:
             found=kind,
             expected="`key: value` lines",
         )
-    return Document(values, source, place)
+    document = Document(values, source, place)
+    for path, text in _texts(values):
+        if _SURROGATE.search(text):
+            raise FileFormatError(
+                "an escape stands for half a character (a lone surrogate)",
+                source=source, place=place.describe(path), found=ascii(text)[:60], expected="whole characters",
+            )  # fmt: skip
+    return document
+
+
+def _texts(values: object, path: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
+    """All texts, keys too; a key's place is that of its mapping, whose path can be printed."""
+    if isinstance(values, str):
+        yield path, values
+    elif isinstance(values, dict):
+        for key, value in values.items():
+            yield path, key
+            yield from _texts(value, (*path, key))
+    elif isinstance(values, list):
+        for index, value in enumerate(values):
+            yield from _texts(value, (*path, index))
 
 
 def _text(path: Path) -> str:

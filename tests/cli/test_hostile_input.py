@@ -1,0 +1,90 @@
+"""Names no file can have, half characters, terminals without Unicode, readers that leave, and Ctrl-C."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.cli.layouts import HEAD, HOLDS, on_part
+
+PROGRAM = [sys.executable, "-c", "from fixture_design.cli import main; main()"]
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ("{mesh: " + "a" * 5000 + ".stl}", "too long"),
+        ('{mesh: "a\\0.stl"}', "null"),
+        ("{mesh: folder.stl}", "this is a folder"),
+        ("{mesh: loop.stl}", "cannot be read"),
+        ("{urdf: " + "a" * 5000 + ".urdf}", "too long"),
+        ("{urdf: encoding.urdf}", "not XML"),
+    ],
+)
+def test_files_that_cannot_be_read(command: Callable, tmp_path: Path, part: str, words: str) -> None:
+    (tmp_path / "folder.stl").mkdir()
+    (tmp_path / "loop.stl").symlink_to("loop.stl")
+    (tmp_path / "encoding.urdf").write_text("<?xml version='1.0' encoding='klingon'?><robot/>")
+    path = tmp_path / "x.yaml"
+    path.write_text(on_part(part))
+    ran = command("verify", path)
+    assert (ran.code, len(ran.err.splitlines())) == (2, 1)
+    assert words in ran.err
+
+
+@pytest.mark.parametrize("text", ['"name": "\\ud800"', '"\\ud800": 1', '"stages": [{"name": "\\udfff"}]'])
+def test_half_characters(command: Callable, tmp_path: Path, text: str) -> None:
+    path = tmp_path / "x.json"
+    path.write_text('{"schema": "fixture_design/layout/1", ' + text + "}")
+    ran = command("verify", "--json", path)
+    assert (ran.code, len(ran.err.splitlines())) == (2, 1)
+    assert "half a character" in ran.err
+
+
+def test_control_characters_do_not_reach_the_terminal(command: Callable, tmp_path: Path) -> None:
+    ran = command("verify", tmp_path / "a\x1b[31m.yaml")
+    assert (ran.code, "\x1b" in ran.err, "\\x1b" in ran.err) == (2, False, True)
+
+
+def test_a_terminal_without_unicode(tmp_path: Path) -> None:
+    path = tmp_path / "x.yaml"
+    path.write_text(HOLDS.replace(HEAD, HEAD + "name: Gehäuse\n"))
+    ran = subprocess.run(
+        [*PROGRAM, "verify", path], cwd=ROOT, env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        capture_output=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert (ran.returncode, ran.stderr) == (0, b"")
+    assert b"Geh\\xe4use" in ran.stdout
+
+
+def test_a_reader_that_leaves(tmp_path: Path) -> None:
+    path = tmp_path / "x.yaml"
+    path.write_text(HOLDS)
+    read, write = os.pipe()
+    os.close(read)
+    ran = subprocess.run(
+        [*PROGRAM, "verify", path], cwd=ROOT, stdout=write, stderr=subprocess.PIPE, timeout=60, check=False
+    )
+    os.close(write)
+    assert (ran.returncode, ran.stderr) == (141, b"")
+
+
+@pytest.mark.parametrize("wait", [0.0, 0.15, 0.4])
+def test_interrupted_while_importing(wait: float) -> None:
+    code = "import sys; from fixture_design.cli import main; print('in', flush=True); main()"
+    running = subprocess.Popen(
+        [sys.executable, "-c", code, "verify", "urdf/bracket/bracket.layout.yaml"],
+        cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert running.stdout is not None
+    running.stdout.readline()
+    time.sleep(0.02 + wait)
+    running.send_signal(signal.SIGINT)
+    _, err = running.communicate(timeout=60)
+    assert (running.returncode, err) == (130, b"fixture-design: interrupted\n")
