@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 import traceback
 from pathlib import Path
-
-import typer
 
 from fixture_design.errors import InputError
 
 
 def say(message: str) -> None:
     """One line on stderr, with the program's name; characters that could steer a terminal are escaped."""
-    typer.echo(f"fixture-design: {printable(message)}", err=True)
+    print(f"fixture-design: {printable(message)}", file=sys.stderr)
 
 
 def printable(text: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -25,7 +24,7 @@ def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
     console = console or _console()
     with console.capture() as printed:  # rich would end the process on a broken pipe, with the code of a failure
         _print(verdict, console)
-    typer.echo(printed.get(), nl=False)
+    console.file.write(printed.get())  # not typer.echo, which writes UTF-8 where the terminal said ASCII
 
 
 def _print(verdict: Verdict, console: Console) -> None:
