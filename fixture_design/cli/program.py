@@ -54,7 +54,11 @@ def run() -> None:
     try:
         code = app(prog_name="fixture-design", standalone_mode=False)
         sys.stdout.flush()
-    except BrokenPipeError:  # `| head`: nobody reads on, and Python's own flush at the end must not complain
+    except (BrokenPipeError, SystemExit) as left:
+        # `| head`: nobody reads on. Typer makes that an exit with 1, which here means that requirements fail
+        if isinstance(left, SystemExit) and not isinstance(left.__context__, BrokenPipeError):
+            raise
+        # Python's own flush at the end must not complain
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = ExitCode.BROKEN_PIPE
     except InputError as error:
