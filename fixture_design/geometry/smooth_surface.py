@@ -71,6 +71,11 @@ class RoundShape:
         none = lengths <= _NO_NORMAL * np.hypot(across, along).max(initial=0.0)
         return np.where(none, 0.0, raw / np.where(none, 1.0, lengths))
 
+    def reach(self, point: Vector3) -> float:
+        """Distance of a point from the axis, of a sphere from the centre [m]."""
+        along, outward = self._split(point[None])
+        return float(np.hypot(np.linalg.norm(outward), along[0] if self.kind == "sphere" else 0.0))
+
     def _split(self, points: Directions) -> tuple[PerPoint, Directions]:
         """How far along the axis, and the part of each point that is square to it."""
         away = points - self.point
@@ -124,10 +129,10 @@ class SmoothSurface:
         """The outward unit normal at a point near the surface.
 
         Raises:
-            UnsupportedError: a point on the axis, where there is none.
+            UnsupportedError: a point on the axis, where there is none, or no further from it than facets are deep.
         """
         normal = self.shape.directions(p_PC[None])[0]
-        if not normal.any():
+        if not normal.any() or self.shape.reach(p_PC) <= self.sagitta:
             raise UnsupportedError(f"{self.name} has no normal on its axis", expected="a point away from the axis")
         return -normal if self.hollow else normal
 
