@@ -27,7 +27,7 @@ from fixture_design.geometry.shapes import (
 )
 from fixture_design.geometry.smooth_regions import smooth_surfaces
 from fixture_design.geometry.smooth_surface import SmoothSurface
-from fixture_design.geometry.soundness import shells
+from fixture_design.geometry.winding import shells, winding_number
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
 
@@ -178,18 +178,3 @@ class PartGeometry:
         if self.is_one_shell:
             return np.array([self.surface.at(point)[0] < 0 for point in points], dtype=bool)
         return np.array([winding_number(self.vertices, self.triangles, point) > 0.5 for point in points], dtype=bool)
-
-
-def winding_number(vertices: Vertices, triangles: Triangles, point: Vector3) -> float:
-    """How often the surface surrounds a point: the sum of the triangles' solid angles over 4 pi.
-
-    Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983.
-    """
-    first, second, third = (vertices[triangles[:, corner]] - point for corner in range(3))
-    lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, third)]
-    above = np.einsum("ij,ij->i", first, np.cross(second, third))
-    below = np.prod(lengths, axis=0)
-    below += np.einsum("ij,ij->i", first, second) * lengths[2]
-    below += np.einsum("ij,ij->i", second, third) * lengths[0]
-    below += np.einsum("ij,ij->i", third, first) * lengths[1]
-    return float(np.arctan2(above, below).sum() / (2 * np.pi))

@@ -6,6 +6,7 @@ from collections import deque
 
 import numpy as np
 
+from fixture_design.geometry.edges import directed_edges
 from fixture_design.geometry.piece import area_vectors, heights
 from fixture_design.geometry.shapes import (
     OfTriangle,
@@ -16,7 +17,6 @@ from fixture_design.geometry.shapes import (
     TriangleVectors,
     Vertices,
 )
-from fixture_design.geometry.soundness import directed_edges
 from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
 
