@@ -48,3 +48,19 @@ def edges_of(triangles: Triangles, vertex_count: int) -> Edges:
     balance = np.bincount(index.ravel(), weights=sense, minlength=len(keys)).astype(np.int64)
     uses = np.bincount(index.ravel(), minlength=len(keys)).astype(np.int64)
     return Edges(np.column_stack([keys // vertex_count, keys % vertex_count]), number, uses, balance)
+
+
+def neighbours(triangles: Triangles, vertex_count: int) -> Triangles:
+    """The triangle across each directed edge, shape (t, 3): entry [i, k] shares the edge from corner k to k + 1.
+
+    -1 where an edge has more than two triangles (solids that touch along it): what is across is then not defined.
+    """
+    edges = directed_edges(triangles)
+    forward = edges[:, 0] * vertex_count + edges[:, 1]
+    backward = edges[:, 1] * vertex_count + edges[:, 0]
+    _, number, uses = np.unique(forward, return_inverse=True, return_counts=True)
+    order = np.argsort(forward, kind="stable")
+    place = order[np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)]
+    single = uses[number] == 1
+    found = (forward[place] == backward) & single & single[place]
+    return np.where(found, place // 3, -1).reshape(-1, 3)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from jaxtyping import Int
 
+from fixture_design.arrays import Indices
 from fixture_design.geometry.edges import edges_of
 from fixture_design.geometry.piece import Piece
-from fixture_design.geometry.shapes import OfTriangle, TriangleMask, Triangles
+from fixture_design.geometry.shapes import Triangles
 
 
 def without_repeats(piece: Piece) -> Piece:
@@ -36,7 +38,7 @@ def without_repeats(piece: Piece) -> Piece:
     return replace(piece, triangles=triangles)
 
 
-def _tally(triangles: Triangles) -> tuple[OfTriangle, OfTriangle, OfTriangle]:
+def _tally(triangles: Triangles) -> tuple[Indices, Indices, Indices]:
     """Of each set of three vertices: a triangle that has it, occurrences in its sense less those against it, and all.
 
     Triangles with a repeated corner have no sense and are left alone: each counts for itself.
@@ -52,11 +54,11 @@ def _tally(triangles: Triangles) -> tuple[OfTriangle, OfTriangle, OfTriangle]:
     return first, net, np.bincount(group.ravel()).astype(np.int64)
 
 
-def _taken(triangles: Triangles, first: OfTriangle, times: OfTriangle) -> Triangles:
+def _taken(triangles: Triangles, first: Indices, times: Indices) -> Int[np.ndarray, "_ 3"]:
     """Each of some triangles so many times, reversed where negative, in the order of the file."""
     order = np.argsort(first, kind="stable")
     chosen, times = triangles[first[order]], times[order]
-    backward: TriangleMask = times < 0
+    backward = times < 0
     chosen[backward] = chosen[backward, ::-1]
     return np.repeat(chosen, np.abs(times), axis=0)
 

@@ -8,7 +8,7 @@ from fixture_design.errors import format_length
 from fixture_design.geometry.cracks import without_cracks
 from fixture_design.geometry.edges import edges_of
 from fixture_design.geometry.mending import merged, without_unused
-from fixture_design.geometry.needles import without_needles
+from fixture_design.geometry.needles import without_folds, without_needles
 from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.repeats import without_repeats
 from fixture_design.geometry.shapes import Vertices
@@ -21,7 +21,7 @@ _CLOSED = "a closed triangle mesh"
 
 def sound(piece: Piece) -> Piece:
     """The piece with vertices merged and every shell wound outward, without repeated triangles, cracks at T-junctions,
-    needles and shells without thickness; notes say what was done.
+    needles, slivers that rounding folded over, and shells without thickness; notes say what was done.
 
     Edges where solids touch, with four triangles or more, stay: they are what the shape is like.
 
@@ -32,7 +32,7 @@ def sound(piece: Piece) -> Piece:
     _check_numbers(piece)
     mended = without_cracks(without_repeats(merged(piece)))
     _check_closed(mended)
-    mended = wound_outward(without_sheets(without_needles(mended)))
+    mended = wound_outward(without_sheets(without_folds(without_needles(mended))))
     if piece.smooth and len(mended.triangles) != len(piece.triangles):
         raise piece.error("the shape is too thin: its opposite sides are one within rounding", expected="a solid")
     return without_unused(mended)
