@@ -12,7 +12,7 @@ from fixture_design.geometry.shapes import PerVertex, PolygonVertices, Triangles
 from fixture_design.tolerances import ROUND_OFF
 
 #: Strips around an axis; a multiple of four, so that the outermost points are vertices. 5 degrees each: facets lie
-#: within 0.1 % of the radius of the surface.
+#: within 0.1 % of the radius of a cylinder, and 0.2 % of a sphere.
 STRIPS = 72
 
 #: A curved surface: its kind, the first and last point of the profile, and the height of its centre [m].
@@ -48,7 +48,7 @@ def box(size: Vector3) -> Primitive:
 def cylinder(radius: float, length: float) -> Primitive:
     """A cylinder around z, centred at the origin."""
     half = length / 2
-    return _revolved([[0, -half], [radius, -half], [radius, half], [0, half]], [("cylinder", 1, 2, 0.0)], radius)
+    return _revolved([[0.0, -half], [radius, -half], [radius, half], [0.0, half]], [("cylinder", 1, 2, 0.0)], radius)
 
 
 def sphere(radius: float) -> Primitive:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +45,7 @@ def finer_on_one_side(count: int, off: float = 0.0) -> Mesh:
     across -= (across @ edge) / (edge @ edge) * edge
     extra = extra + off * across / np.linalg.norm(across)
     chain = [first, *range(8, 8 + count), second]
-    fan = [[one, other, apex] for one, other in zip(chain, chain[1:], strict=False)]
+    fan = [[one, other, apex] for one, other in pairwise(chain)]
     return np.vstack([vertices, extra]), np.vstack([triangles[1:], fan])
 
 
