@@ -11,12 +11,15 @@ from fixture_design.geometry.mending import merged, without_unused
 from fixture_design.geometry.needles import without_folds, without_needles
 from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.repeats import without_repeats
-from fixture_design.geometry.shapes import Vertices
+from fixture_design.geometry.shapes import EdgeEnds, Vertices
 from fixture_design.geometry.winding import without_sheets, wound_outward
 from fixture_design.tolerances import MERGE_VERTICES, PLAUSIBLE_SIZE
 
 #: What every part must be.
 _CLOSED = "a closed triangle mesh"
+
+#: What is narrower than this next to its length is called a crack [-].
+_CRACK = 1e-2
 
 
 def sound(piece: Piece) -> Piece:
@@ -79,4 +82,18 @@ def _check_closed(piece: Piece) -> None:
         if faulty.any():
             place = piece.vertices[edges.ends[np.flatnonzero(faulty)[0]]].mean(axis=0)
             text = f"the mesh has {int(faulty.sum())} {problem}"
-            raise piece.error(text, found=f"one at {np.round(place, 9).tolist()} m", expected=expected)
+            found = f"one at {np.round(place, 9).tolist()} m{_crack(piece, edges.ends[faulty])}"
+            raise piece.error(text, found=found, expected=expected)
+
+
+def _crack(piece: Piece, ends: EdgeEnds) -> str:
+    """How wide the crack at the first of some open edges is, if that is little next to the edge; else nothing."""
+    start, end = piece.vertices[ends[:, 0]], piece.vertices[ends[:, 1]]
+    apart = ~np.isin(ends, ends[0]).any(axis=1)
+    middle, along = (start[0] + end[0]) / 2, (end - start)[apart]
+    share = np.einsum("ij,ij->i", middle - start[apart], along) / np.einsum("ij,ij->i", along, along)
+    nearest = start[apart] + np.clip(share, 0.0, 1.0)[:, None] * along
+    width = float(np.linalg.norm(nearest - middle, axis=1).min(initial=np.inf))
+    if width > _CRACK * np.linalg.norm(end[0] - start[0]):
+        return ""
+    return f", a crack {format_length(width)} wide"
