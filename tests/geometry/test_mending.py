@@ -11,7 +11,7 @@ import pytest
 
 from fixture_design.errors import GeometryError
 from fixture_design.geometry.edges import edges_of
-from tests.geometry.parts import Mesh, box, loaded, shared, voxels
+from tests.geometry.parts import Mesh, box, circle, l_shape, loaded, prism, shared, voxels
 from tests.geometry.parts import part as part_of
 
 SIDES = (0.05, 0.03, 0.02)
@@ -66,6 +66,35 @@ def test_cracks_within_the_digits_of_the_file_are_closed_and_say_how_wide(tmp_pa
 def test_cracks_wider_than_the_digits_of_the_file_are_holes(tmp_path: Path) -> None:
     with pytest.raises(GeometryError, match=r"7 open edges.*found one at \["):
         loaded(tmp_path, finer_on_one_side(5, 1e-5))
+
+
+def cracked(mesh: Mesh, seed: int) -> Mesh:
+    """A mesh whose triangles have been split along some of their sides, each without a word to its neighbour."""
+    rng = np.random.default_rng(seed)
+    vertices, triangles, result = mesh[0].tolist(), mesh[1].tolist(), []
+    for triangle in triangles:
+        if rng.random() < 0.5:
+            result.append(triangle)
+            continue
+        start, end, apex = np.roll(triangle, rng.integers(3)).tolist()
+        chain = [start]
+        for share in np.sort(rng.uniform(0.05, 0.95, rng.integers(1, 4))):
+            vertices.append(((1 - share) * np.array(vertices[start]) + share * np.array(vertices[end])).tolist())
+            chain.append(len(vertices) - 1)
+        result += [[one, other, apex] for one, other in pairwise([*chain, end])]
+    return np.array(vertices), rng.permutation(np.array(result))
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("mesh", [l_shape(), prism(circle(0.02, 12), 0.03)], ids=["L", "prism"])
+def test_cracks_anywhere_on_either_side(tmp_path: Path, mesh: Mesh, seed: int) -> None:
+    vertices, triangles = cracked(mesh, seed)
+    # as an STL file would have it
+    geometry = loaded(tmp_path, (vertices.astype(np.float32).astype(float), triangles))
+    assert any("T-junctions" in note for note in geometry.notes)
+    assert geometry.is_one_shell
+    assert enclosed(geometry.vertices, geometry.triangles) == pytest.approx(enclosed(*mesh), rel=1e-6)
+    assert geometry.surface.at(geometry.high + 0.01)[0] > 0.01
 
 
 def test_a_triangle_with_cracks_on_all_its_sides(tmp_path: Path) -> None:
