@@ -20,12 +20,16 @@ def flat_ones(piece: Piece, triangles: Triangles, flat: PerVertex) -> TriangleMa
 
 
 class Flips:
-    """A mesh while flat triangles are flipped away one by one; lists and a dictionary, so that each flip is cheap."""
+    """A mesh while flat triangles are flipped away one by one; lists and a dictionary, so that each flip is cheap.
+
+    Attributes:
+        count: how many are gone.  highest: height of the highest one that was flipped [m].
+    """
 
     def __init__(self, piece: Piece, flat: PerVertex) -> None:
         """A triangle counts as flat if its height is at most ``flat`` of one of its vertices [m]."""
         self.piece, self.flat = piece, flat
-        self.count = 0
+        self.count, self.highest = 0, 0.0
         self.corners: list[list[int]] = piece.triangles.tolist()
         self.across: dict[tuple[int, int], list[int]] = {}
         for number in range(len(self.corners)):
@@ -73,6 +77,7 @@ class Flips:
         parts = [second, middle, apex], [middle, first, apex]
         if all(self._is_flat(part) for part in parts) and not self._is_longest(first, second, apex):
             return None
+        self.highest = max(self.highest, float(heights(points, np.array([[0, 1, 2]]))[0]))
         self._replace(neighbour, parts[0])
         self._replace(needle, parts[1])
         self.count += 1

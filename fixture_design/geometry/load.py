@@ -28,7 +28,7 @@ def load_part(part: Part) -> PartGeometry:
         UnsupportedError: STEP without its extra package; other kinds of files; movable joints.
     """
     if part.kind == "polygon" or part.file is None:
-        raise GeometryError(f"part {part.name!r} has no solid geometry", expected="a mesh or a URDF file")
+        raise GeometryError(f"part {part.name!r} has no solid geometry", expected="a mesh, URDF or STEP file")
     if part.kind == "urdf":
         pieces, notes = read_urdf(part.file)
     elif part.kind == "step" and part.file.suffix.lower() not in STEP_ENDINGS:

@@ -9,11 +9,12 @@ import numpy as np
 from fixture_design.errors import format_length
 from fixture_design.geometry.edges import neighbours
 from fixture_design.geometry.flips import Flips, flat_ones
-from fixture_design.geometry.piece import Piece, area_vectors, heights
+from fixture_design.geometry.piece import Piece, area_vectors
 from fixture_design.geometry.shapes import PerVertex, TriangleMask
 from fixture_design.tolerances import ON_EDGE_ROUNDINGS, ZERO_COORDINATE
 
-#: Rounds of flips before a mesh is given up [-]: slivers in a fan wait for the one at its end.
+#: Rounds of flips, each reaching one triangle further, before a mesh is given up [-]: slivers in a fan wait for the one
+#: at its end.
 _ROUNDS = 10
 
 
@@ -61,30 +62,28 @@ def without_folds(piece: Piece) -> Piece:
     before, count = piece, int(_folded(piece, flat).sum())
     if not count:
         return piece
-    for _ in range(_ROUNDS):
+    moved = 0.0
+    for rings in range(_ROUNDS):
         folded = _folded(piece, flat)
         if not folded.any():
             break
         flips = Flips(piece, flat)
-        flips.run(np.flatnonzero(_with_slivers_around(piece, flat, folded)))
-        piece = replace(piece, triangles=flips.triangles())
+        flips.run(np.flatnonzero(_with_slivers_around(piece, flat, folded, rings)))
+        piece, moved = replace(piece, triangles=flips.triangles()), max(moved, flips.highest)
     left = int(_folded(piece, flat).sum())
     if left >= count:
         return before
-    moved = heights(before.vertices, before.triangles)[_folded(before, flat)].max()
-    text = f"{count - left} slivers folded over their neighbours taken out; the surface moved by at most "
-    return replace(piece, notes=before.note(text + format_length(float(moved))))
+    text = f"{count - left} slivers folded over their neighbours flipped away, each by at most {format_length(moved)}"
+    return replace(piece, notes=before.note(text))
 
 
-def _with_slivers_around(piece: Piece, flat: PerVertex, folded: TriangleMask) -> TriangleMask:
-    """The folded slivers and those that hang together with them: in a fan one waits for the next."""
+def _with_slivers_around(piece: Piece, flat: PerVertex, folded: TriangleMask, rings: int) -> TriangleMask:
+    """The folded slivers and those up to so many triangles away: in a fan one waits for the next."""
     slivers = flat_ones(piece, piece.triangles, flat)
     across = neighbours(piece.triangles, len(piece.vertices))
-    chosen, before = folded, np.zeros_like(folded)
-    while (chosen != before).any():
-        before = chosen
-        chosen = chosen | (slivers & (chosen[across] & (across >= 0)).any(axis=1))
-    return chosen
+    for _ in range(rings):
+        folded = folded | (slivers & (folded[across] & (across >= 0)).any(axis=1))
+    return folded
 
 
 def _folded(piece: Piece, flat: PerVertex) -> TriangleMask:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from fixture_design.errors import GeometryError
 from fixture_design.geometry.edges import edges_of
@@ -120,8 +121,27 @@ def test_real_parts_with_cracks(name: str) -> None:
     geometry = load_part(part_of(shared(f"{folder}/factory_{name}_subdiv_3x.obj")))
     assert geometry.is_one_shell
     assert any("T-junctions" in note and "at most 0 um" in note for note in geometry.notes)
+    assert any("slivers folded" in note for note in geometry.notes) == name.startswith("round")
     # the hole is a hole: its axis is outside, a corner is not
     assert geometry.inside(np.array([[0, 0, 0.004], [0.0122, 0.0122, 0.004]])).tolist() == [False, True]
+
+
+def test_needles_that_rounding_turned_over_are_flipped_away(tmp_path: Path) -> None:
+    # a needle per edge of a prism at an angle, whose middle corner six decimals put on either side of the edge
+    vertices, triangles = prism(circle(0.02, 11), 0.03)
+    vertices = vertices @ Rotation.from_euler("xyz", [0.3, 0.4, 0.5]).as_matrix().T
+    middles, result = [], []
+    for start, end, apex in triangles.tolist():
+        middle = len(vertices) + len(middles)
+        middles.append(0.45 * vertices[start] + 0.55 * vertices[end])
+        result += [[start, middle, apex], [middle, end, apex], [start, end, middle]]
+    mesh = np.round(np.vstack([vertices, middles]), 6), np.array(result)
+    assert not edges_of(mesh[1], len(mesh[0])).odd.any()
+    geometry = loaded(tmp_path, mesh)
+    assert any("slivers folded" in note and " um" in note for note in geometry.notes)
+    assert geometry.is_one_shell
+    assert enclosed(geometry.vertices, geometry.triangles) == pytest.approx(enclosed(*mesh), rel=1e-4)
+    assert geometry.surface.at(geometry.high + 0.01)[0] > 0.01
 
 
 def test_triangles_that_are_there_twice(tmp_path: Path) -> None:
