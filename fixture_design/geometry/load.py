@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fixture_design.errors import GeometryError, UnsupportedError
+from fixture_design.errors import FileFormatError, GeometryError
 from fixture_design.geometry.mesh_file import read_mesh
 from fixture_design.geometry.part import PartGeometry
-from fixture_design.geometry.piece import Piece, rounding_of
+from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.soundness import size_notes, sound
+from fixture_design.geometry.step_file import STEP_ENDINGS
 from fixture_design.geometry.urdf import read_urdf
 from fixture_design.layout import Part
 
@@ -24,15 +25,15 @@ def load_part(part: Part) -> PartGeometry:
     Raises:
         GeometryError: a mesh that is empty, not finite, flat, not closed or wound inconsistently; a planar part.
         FileFormatError: a file that is missing or not what its name says.
-        UnsupportedError: STEP; other kinds of files; movable joints; cylinders and spheres in URDF.
+        UnsupportedError: STEP without its extra package; other kinds of files; movable joints.
     """
-    if part.kind == "step":
-        expected = "a mesh of the part (STL, OBJ, DAE, PLY), or URDF"
-        raise UnsupportedError("this version does not read STEP", source=part.file, expected=expected)
     if part.kind == "polygon" or part.file is None:
-        raise GeometryError(f"part {part.name!r} has no solid geometry", expected="a mesh or a URDF file")
+        raise GeometryError(f"part {part.name!r} has no solid geometry", expected="a mesh, URDF or STEP file")
     if part.kind == "urdf":
         pieces, notes = read_urdf(part.file)
+    elif part.kind == "step" and part.file.suffix.lower() not in STEP_ENDINGS:
+        expected = f"a name that ends in {' or '.join(STEP_ENDINGS)}; other kinds are a `mesh`"
+        raise FileFormatError(f"{part.file.name} is not STEP", source=part.file, expected=expected)
     else:
         pieces, notes = [_mesh_piece(part.file, part.scale)], ()
     geometry = PartGeometry.of_pieces(part.name, [sound(piece) for piece in pieces], notes, part.faceted)
@@ -42,5 +43,5 @@ def load_part(part: Part) -> PartGeometry:
 def _mesh_piece(file: Path, scale: float) -> Piece:
     if not (np.isfinite(scale) and scale > 0):
         raise GeometryError("scale must be a number > 0", source=file, found=str(scale))
-    vertices, triangles = read_mesh(file)
-    return Piece(vertices * scale, triangles, rounding_of(vertices) * scale, file)
+    mesh = read_mesh(file)
+    return Piece(mesh.vertices * scale, mesh.triangles, mesh.rounding * scale, file)

@@ -4,28 +4,28 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
-from fixture_design.errors import FileFormatError, UnsupportedError
-from fixture_design.geometry.shapes import Triangles, Vertices
+from fixture_design.errors import FileFormatError, InputError, UnsupportedError
+from fixture_design.geometry.scene import RawMesh, flattened
+from fixture_design.geometry.step_file import STEP_ENDINGS, step_scene
 
 #: What this version reads, by the end of the file's name.
-MESH_ENDINGS = (".stl", ".dae", ".obj", ".ply")
+MESH_ENDINGS = (".stl", ".dae", ".obj", ".ply", ".gltf", ".glb", ".3mf", *STEP_ENDINGS)
 
 
-def read_mesh(file: Path, place: str | None = None, source: Path | None = None) -> tuple[Vertices, Triangles]:
+def read_mesh(file: Path, place: str | None = None, source: Path | None = None) -> RawMesh:
     """All triangles of a mesh file in its own unit, scenes flattened.
 
     Args:
-        file: STL, DAE, OBJ or PLY.
+        file: STL, DAE, OBJ, PLY, glTF, GLB, 3MF or STEP.
         place, source: for messages, where another file refers to this one.
 
     Returns:
-        vertices, shape (v, 3), and triangles, shape (t, 3); both empty for a file without any. COLLADA's own unit is
-        not applied: `scale` is, once, for every kind of file.
+        The numbers as they stand in the file, empty for a file without triangles. The units that COLLADA and 3MF files
+        name are not applied: `scale` is, once, for every kind of file. glTF and STEP are in metres.
 
     Raises:
-        UnsupportedError: another kind of file.  FileFormatError: missing, or not readable as what its name says.
+        UnsupportedError: another kind of file; STEP without its extra package.
+        FileFormatError: missing, or not readable as what its name says.
     """
     where = {"source": source or file, "place": place}
     if file.suffix.lower() not in MESH_ENDINGS:
@@ -39,13 +39,16 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
     import trimesh
 
     try:
-        scene = trimesh.load_scene(str(file), process=False)
-        flat = scene.to_mesh()
-        vertices, triangles = np.array(flat.vertices, dtype=np.float64), np.array(flat.faces, dtype=np.int64)
+        if file.suffix.lower() in STEP_ENDINGS:
+            scene = step_scene(file, place, source or file)
+        else:
+            scene = trimesh.load_scene(str(file), process=False)
+    except InputError:
+        raise
     except Exception as cause:  # readers raise whatever their parsers do; all of it means that the file is no such mesh
         kind = file.suffix[1:].upper()
         raise FileFormatError(f"{file.name} cannot be read as {kind}", found=_first_line(cause), **where) from cause
-    return vertices.reshape(-1, 3), triangles.reshape(-1, 3)
+    return flattened(scene)
 
 
 def unreadable(file: Path, kind: str = "mesh file") -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,7 @@ from fixture_design.contacts import Provenance
 from fixture_design.geometry.distance import DistanceField
 from fixture_design.geometry.facets import Facet, Facets, facet_notes, facets_of
 from fixture_design.geometry.flats import judged_again
-from fixture_design.geometry.piece import Piece
+from fixture_design.geometry.piece import Piece, SmoothPatch
 from fixture_design.geometry.planes import neighbours
 from fixture_design.geometry.shapes import (
     DirectionMask,
@@ -27,7 +27,7 @@ from fixture_design.geometry.shapes import (
 )
 from fixture_design.geometry.smooth_regions import smooth_surfaces
 from fixture_design.geometry.smooth_surface import SmoothSurface
-from fixture_design.geometry.soundness import shells
+from fixture_design.geometry.winding import shells, winding_number
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
 
@@ -41,6 +41,7 @@ class PartGeometry:
         rounding: shape (v,), how far each vertex may be from what was meant [m].
         read_notes: what was mended or looks doubtful on reading, for people.
         faceted: no facet stands for a piece of a round surface.
+        given: round surfaces that are known exactly, with the triangles that stand for them.
     """
 
     name: str
@@ -49,6 +50,7 @@ class PartGeometry:
     rounding: PerVertex
     read_notes: tuple[str, ...] = ()
     faceted: bool = False
+    given: tuple[SmoothPatch, ...] = ()
 
     @classmethod
     def of_pieces(
@@ -58,6 +60,7 @@ class PartGeometry:
         starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
         triangles = np.vstack([piece.triangles + start for piece, start in zip(pieces, starts, strict=False)])
         triangles.flags.writeable = False
+        firsts = np.cumsum([0, *(len(piece.triangles) for piece in pieces)]).tolist()
         return cls(
             name,
             read_only(np.vstack([piece.vertices for piece in pieces])),
@@ -65,6 +68,11 @@ class PartGeometry:
             read_only(np.concatenate([piece.rounding for piece in pieces])),
             (*notes, *(note for piece in pieces for note in piece.notes)),
             faceted,
+            tuple(
+                replace(patch, triangles=patch.triangles + first)
+                for piece, first in zip(pieces, firsts, strict=False)
+                for patch in piece.smooth
+            ),
         )
 
     @property
@@ -178,18 +186,3 @@ class PartGeometry:
         if self.is_one_shell:
             return np.array([self.surface.at(point)[0] < 0 for point in points], dtype=bool)
         return np.array([winding_number(self.vertices, self.triangles, point) > 0.5 for point in points], dtype=bool)
-
-
-def winding_number(vertices: Vertices, triangles: Triangles, point: Vector3) -> float:
-    """How often the surface surrounds a point: the sum of the triangles' solid angles over 4 pi.
-
-    Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983.
-    """
-    first, second, third = (vertices[triangles[:, corner]] - point for corner in range(3))
-    lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, third)]
-    above = np.einsum("ij,ij->i", first, np.cross(second, third))
-    below = np.prod(lengths, axis=0)
-    below += np.einsum("ij,ij->i", first, second) * lengths[2]
-    below += np.einsum("ij,ij->i", second, third) * lengths[0]
-    below += np.einsum("ij,ij->i", third, first) * lengths[1]
-    return float(np.arctan2(above, below).sum() / (2 * np.pi))

@@ -4,15 +4,38 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
+from fixture_design.arrays import Indices
 from fixture_design.errors import GeometryError
-from fixture_design.geometry.shapes import PerTriangle, PerVertex, Triangles, TriangleVectors, Vertices
+from fixture_design.geometry.shapes import PerTriangle, PerVertex, Triangles, TriangleVectors, Vector3, Vertices
 from fixture_design.tolerances import ROUND_OFF, ROUNDED_DIGITS
 
 #: Decimals beyond which a text file keeps everything a float64 has.
 _MOST_DECIMALS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothPatch:
+    """A surface of revolution that some triangles stand for, known exactly: from a primitive shape, not recognised.
+
+    Attributes:
+        kind: which surface.
+        point: on the axis; centre of spheres and tori, apex of cones, shape (3,) [m].
+        axis: unit; any direction for spheres, shape (3,).
+        radius: of cylinder, sphere, or a torus's tube [m]; of a cone its half angle [rad].
+        ring: of a torus, distance of the tube's centre from the axis [m]; else 0.
+        triangles: which triangles of the piece it covers.
+    """
+
+    kind: Literal["cylinder", "cone", "sphere", "torus"]
+    point: Vector3
+    axis: Vector3
+    radius: float
+    ring: float
+    triangles: Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +48,7 @@ class Piece:
         rounding: shape (v,), how far each coordinate may be from what the designer meant [m].
         source: the file.  place: where in it ("link 'base', mesh 'base.stl'"), None for a mesh of its own.
         notes: what was mended, for people.
+        smooth: curved surfaces that are known exactly; none in a mesh.
     """
 
     vertices: Vertices
@@ -33,6 +57,7 @@ class Piece:
     source: Path
     place: str | None = None
     notes: tuple[str, ...] = ()
+    smooth: tuple[SmoothPatch, ...] = ()
 
     @property
     def size(self) -> float:
@@ -93,10 +118,3 @@ def heights(vertices: Vertices, triangles: Triangles) -> PerTriangle:
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     areas = np.linalg.norm(area_vectors(vertices, triangles), axis=1)
     return areas / np.where(longest > 0, longest, 1.0)
-
-
-def volume(vertices: Vertices, triangles: Triangles) -> float:
-    """Signed volume of a closed mesh [m^3]: negative if it is wound inside out."""
-    middle = vertices[triangles.ravel()].mean(axis=0)
-    first, second, third = (vertices[triangles[:, corner]] - middle for corner in range(3))
-    return float(np.einsum("ij,ij->", first, np.cross(second, third))) / 6

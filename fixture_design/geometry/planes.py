@@ -6,6 +6,7 @@ from collections import deque
 
 import numpy as np
 
+from fixture_design.geometry.edges import neighbours
 from fixture_design.geometry.piece import area_vectors, heights
 from fixture_design.geometry.shapes import (
     OfTriangle,
@@ -16,24 +17,7 @@ from fixture_design.geometry.shapes import (
     TriangleVectors,
     Vertices,
 )
-from fixture_design.geometry.soundness import directed_edges
 from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES, ON_EDGE_ROUNDINGS
-
-
-def neighbours(triangles: Triangles, vertex_count: int) -> Triangles:
-    """The triangle across each directed edge, shape (t, 3): entry [i, k] shares the edge from corner k to k + 1.
-
-    -1 where an edge has more than two triangles (solids that touch along it): what is across is then not defined.
-    """
-    edges = directed_edges(triangles)
-    forward = edges[:, 0] * vertex_count + edges[:, 1]
-    backward = edges[:, 1] * vertex_count + edges[:, 0]
-    _, number, uses = np.unique(forward, return_inverse=True, return_counts=True)
-    order = np.argsort(forward, kind="stable")
-    place = order[np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)]
-    single = uses[number] == 1
-    found = (forward[place] == backward) & single & single[place]
-    return np.where(found, place // 3, -1).reshape(-1, 3)
 
 
 def plane_numbers(vertices: Vertices, triangles: Triangles, rounding: PerVertex) -> tuple[OfTriangle, TriangleMask]:

@@ -14,6 +14,14 @@ TriangleVectors = Float[np.ndarray, "t 3"]
 PerTriangle = Float[np.ndarray, "t"]
 OfTriangle = Int[np.ndarray, "t"]
 TriangleMask = Bool[np.ndarray, "t"]
+#: The three sides of each triangle as vertex numbers, side after side, and one index or selection a side.
+Sides = Int[np.ndarray, "s 2"]
+OfSide = Int[np.ndarray, "s"]
+SideMask = Bool[np.ndarray, "s"]
+#: Distinct edges by the vertices at their ends, and one count or selection an edge.
+EdgeEnds = Int[np.ndarray, "e 2"]
+PerEdge = Int[np.ndarray, "e"]
+EdgeMask = Bool[np.ndarray, "e"]
 #: The three corners of each triangle.
 Corners = Float[np.ndarray, "t 3 3"]
 #: One vector or number a facet.

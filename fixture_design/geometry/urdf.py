@@ -1,7 +1,9 @@
-"""The collision geometry of a URDF file: meshes and boxes of links joined by fixed joints, in the root link's frame."""
+"""The collision geometry of a URDF file: meshes and simple shapes of fixed links, in the root link's frame."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,20 +12,19 @@ import numpy as np
 from fixture_design.errors import UnsupportedError
 from fixture_design.geometry.mesh_file import read_mesh
 from fixture_design.geometry.package import resolve
-from fixture_design.geometry.piece import Piece, rounding_of
+from fixture_design.geometry.piece import Piece
+from fixture_design.geometry.primitives import Primitive, box, capsule, cylinder, sphere
 from fixture_design.geometry.urdf_tree import UrdfFile, composed, links_in_root, robot_of
 from fixture_design.layout import Pose
 from fixture_design.tolerances import ROUND_OFF
 
-#: Corners of the unit box, and its triangles, wound outward.
-_BOX_CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-_BOX_TRIANGLES = np.array(
-    [
-        *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5]),
-        *([0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6]),
-        *([0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]),
-    ]
-)
+#: Shapes that are no meshes: the attributes that measure them, and what makes a mesh of those.
+_SHAPES: dict[str, tuple[tuple[str, ...], Callable[..., Primitive]]] = {
+    "box": (("size",), box),
+    "cylinder": (("radius", "length"), cylinder),
+    "sphere": (("radius",), sphere),
+    "capsule": (("radius", "length"), capsule),
+}
 
 
 def read_urdf(file: Path) -> tuple[list[Piece], tuple[str, ...]]:
@@ -33,7 +34,7 @@ def read_urdf(file: Path) -> tuple[list[Piece], tuple[str, ...]]:
 
     Raises:
         FileFormatError: no file, not XML, not URDF, links that do not form one tree, a mesh that is missing.
-        UnsupportedError: movable joints; geometry other than meshes and boxes; xacro.
+        UnsupportedError: movable joints; geometry other than meshes, boxes, cylinders, spheres and capsules; xacro.
     """
     urdf = UrdfFile(file, robot_of(file))
     pieces, notes = [], []
@@ -57,24 +58,28 @@ def _shape(urdf: UrdfFile, shape: ElementTree.Element, place: str) -> Piece:
     geometry = None if found is None else next(iter(found), None)
     if geometry is None:
         raise urdf.error("there is no geometry", place, expected="<geometry><mesh filename=.../></geometry>")
-    if geometry.tag == "box":
-        return _box(urdf, geometry, place)
-    if geometry.tag == "mesh":
+    # Drake's own shapes have its prefix in front
+    tag = str(geometry.tag).rpartition("}")[2]
+    if tag == "mesh":
         return _mesh(urdf, geometry, place)
-    raise UnsupportedError(
-        f"this version takes meshes and boxes, not <{geometry.tag}>",
-        source=urdf.file,
-        place=place,
-        expected="the shape as a mesh file",
-    )
+    if tag not in _SHAPES:
+        raise UnsupportedError(
+            f"this version takes meshes, boxes, cylinders, spheres and capsules, not <{tag}>",
+            source=urdf.file,
+            place=place,
+            expected="the shape as a mesh file",
+        )
+    return _primitive(urdf, geometry, tag, place)
 
 
-def _box(urdf: UrdfFile, geometry: ElementTree.Element, place: str) -> Piece:
-    size = urdf.numbers(geometry, "size", "", place)
-    if (size <= 0).any():
-        raise urdf.error("a box needs positive sides", place, found=geometry.get("size"))
-    corners = _BOX_CORNERS * size
-    return Piece(corners, _BOX_TRIANGLES.copy(), np.abs(corners).max(axis=1) * ROUND_OFF, urdf.file, place)
+def _primitive(urdf: UrdfFile, geometry: ElementTree.Element, tag: str, place: str) -> Piece:
+    keys, make = _SHAPES[tag]
+    measures = [urdf.numbers(geometry, key, "", place, counts=(3,) if key == "size" else (1,)) for key in keys]
+    if any((measure <= 0).any() for measure in measures):
+        found = ", ".join(f"{key} {geometry.get(key)!r}" for key in keys)
+        raise urdf.error(f"a {tag} needs positive {' and '.join(keys)}", place, found=found)
+    shape = make(*(measure if len(measure) > 1 else float(measure[0]) for measure in measures))
+    return Piece(shape.vertices, shape.triangles, shape.rounding, urdf.file, place, smooth=shape.smooth)
 
 
 def _mesh(urdf: UrdfFile, geometry: ElementTree.Element, place: str) -> Piece:
@@ -83,11 +88,10 @@ def _mesh(urdf: UrdfFile, geometry: ElementTree.Element, place: str) -> Piece:
     scale = urdf.numbers(geometry, "scale", "1 1 1", place, counts=(1, 3)) * np.ones(3)
     if (scale == 0).any():
         raise urdf.error("a scale of 0", place, found=geometry.get("scale"), expected="factors to metres")
-    vertices, triangles = read_mesh(resolve(name, urdf.file, place), place, urdf.file)
-    rounding = rounding_of(vertices) * np.abs(scale).max()
+    mesh = read_mesh(resolve(name, urdf.file, place), place, urdf.file)
     # a mirror image turns the winding inside out
-    triangles = triangles[:, ::-1] if np.prod(scale) < 0 else triangles
-    return Piece(vertices * scale, triangles, rounding, urdf.file, place)
+    triangles = mesh.triangles[:, ::-1] if np.prod(scale) < 0 else mesh.triangles
+    return Piece(mesh.vertices * scale, triangles, mesh.rounding * np.abs(scale).max(), urdf.file, place)
 
 
 def _posed(piece: Piece, X_RL: Pose, X_LS: Pose) -> Piece:
@@ -96,4 +100,8 @@ def _posed(piece: Piece, X_RL: Pose, X_LS: Pose) -> Piece:
         return piece
     vertices = X_RS.points(piece.vertices)
     rounding = piece.rounding + ROUND_OFF * np.abs(vertices).max(axis=1, initial=0.0)
-    return Piece(vertices, piece.triangles, rounding, piece.source, piece.place)
+    smooth = tuple(
+        replace(patch, point=X_RS.points(patch.point[None])[0], axis=X_RS.rotation @ patch.axis)
+        for patch in piece.smooth
+    )
+    return replace(piece, vertices=vertices, rounding=rounding, smooth=smooth)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -59,7 +60,7 @@ def robot_of(file: Path) -> ElementTree.Element:
     if problem := unreadable(file, "such file"):
         raise FileFormatError(problem, source=file, expected="a URDF file")
     try:
-        robot = ElementTree.parse(file).getroot()
+        robot = ElementTree.fromstring(_declared(file.read_bytes()))
     except ElementTree.ParseError as cause:
         line, column = cause.position
         found = str(cause).partition(": line")[0]  # the parser counts columns from 0, we from 1
@@ -73,6 +74,13 @@ def robot_of(file: Path) -> ElementTree.Element:
     if any("xacro" in str(element.tag) for element in robot.iter()):
         raise UnsupportedError("this is xacro, not URDF", source=file, expected="the URDF that xacro makes of it")
     return robot
+
+
+def _declared(text: bytes) -> bytes:
+    """The text with the prefix ``drake:`` declared in its root element: Drake reads it undeclared, XML does not."""
+    if b"<drake:" not in text or b"xmlns:drake" in text:
+        return text
+    return re.sub(rb"<robot\b", b'<robot xmlns:drake="https://drake.mit.edu"', text, count=1)
 
 
 def links_in_root(urdf: UrdfFile) -> dict[str, Pose]:

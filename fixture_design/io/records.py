@@ -48,7 +48,7 @@ class PartRecord(Record):
     WANTED: ClassVar[str] = "a mapping such as {mesh: part.stl, scale: 0.001}"
     model_config = exactly_one("urdf", "mesh", "step", "polygon")
     urdf: Text | None = Field(None, description="URDF file, relative to this file")
-    mesh: Text | None = Field(None, description="STL, OBJ, DAE, PLY, glTF or 3MF file")
+    mesh: Text | None = Field(None, description="STL, OBJ, DAE, PLY, glTF, GLB or 3MF file")
     step: Text | None = Field(None, description="STEP file")
     polygon: Annotated[tuple[Pair, ...], Field(strict=False, min_length=3)] | None = Field(
         None, description="planar: vertices [x, y] in P, counter-clockwise [length]"

@@ -106,7 +106,7 @@ CASES: dict[str, tuple[str | bytes | None, list[str]]] = {
         ["line 1, schema", "needs a newer fixture-design", "expected fixture_design/layout/1"],
     ),
     "no schema": ("name: x\n", ["'schema' is missing", "expected schema: fixture_design/layout/1"]),
-    "STEP": (on_part("{step: x.step}"), ["x.step", "does not read STEP", "expected a mesh"]),
+    "no such STEP file": (on_part("{step: x.step}"), ["x.step", "there is no mesh file", "expected an existing file"]),
 }
 
 

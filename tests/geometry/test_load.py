@@ -25,7 +25,7 @@ def test_importing_geometry_loads_no_backend() -> None:
     assert found.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("ending", ["stl", "obj", "ply", "dae"])
+@pytest.mark.parametrize("ending", ["stl", "obj", "ply", "dae", "glb", "gltf", "3mf"])
 @pytest.mark.parametrize(("unit", "scale"), [(1000.0, 0.001), (1 / 0.0254, 0.0254), (1.0, 1.0)])
 def test_formats_and_units_give_the_same_box(tmp_path: Path, ending: str, unit: float, scale: float) -> None:
     geometry = load_part(part(write(tmp_path, box(*SIDES), f"box.{ending}", unit), scale))
@@ -95,9 +95,14 @@ def test_noise_between_equal_vertices_is_merged(tmp_path: Path) -> None:
         ("beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", FileFormatError, ["OBJ"]),
         ("broken.ply", "garbage", FileFormatError, ["PLY", "Not a ply file"]),
         ("broken.dae", "<a>", FileFormatError, ["DAE"]),
+        ("broken.glb", "garbage", FileFormatError, ["GLB"]),
+        ("broken.gltf", "garbage", FileFormatError, ["GLTF"]),
+        ("buffer.gltf", '{"asset": {"version": "2.0"}, "buffers": [{"uri": "gone.bin", "byteLength": 4}]}',
+         FileFormatError, ["GLTF", "gone.bin"]),
+        ("broken.3mf", "garbage", FileFormatError, ["3MF", "zip"]),
         ("part.igs", "", UnsupportedError, [".igs", ".stl"]),
     ],
-)
+)  # fmt: skip
 def test_bad_mesh_files_say_what_is_wrong(
     tmp_path: Path, name: str, text: str, error: type[InputError], words: list[str]
 ) -> None:
@@ -111,12 +116,65 @@ def test_bad_mesh_files_say_what_is_wrong(
 def test_missing_file_and_step_and_polygon(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match=r"no mesh file.*gone\.stl"):
         load_part(part(tmp_path / "gone.stl"))
-    with pytest.raises(UnsupportedError, match="STEP"):
-        load_part(Part("a", "step", tmp_path / "a.step", None, 1.0, Pose.identity(3)))
+    with pytest.raises(FileFormatError, match=r"no mesh file.*gone\.step"):
+        load_part(Part("a", "step", tmp_path / "gone.step", None, 1.0, Pose.identity(3)))
+    with pytest.raises(FileFormatError, match=r"a\.stl is not STEP; expected a name that ends in \.step or \.stp"):
+        load_part(Part("a", "step", tmp_path / "a.stl", None, 1.0, Pose.identity(3)))
     with pytest.raises(GeometryError, match="solid"):
         load_part(Part("a", "polygon", None, np.eye(2), 1.0, Pose.identity(2)))
     with pytest.raises(GeometryError, match="scale"):
         load_part(part(write(tmp_path, box(1, 1, 1)), scale=float("nan")))
+
+
+def test_step_without_its_package_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cascadio", None)
+    (tmp_path / "a.stp").write_text("ISO-10303-21;")
+    for kind in ("step", "mesh"):
+        with pytest.raises(UnsupportedError, match=r"a\.stp.*pip install 'fixture-design\[step\]'"):
+            load_part(Part("a", kind, tmp_path / "a.stp", None, 1.0, Pose.identity(3)))
+
+
+def test_step_that_is_none_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("cascadio", reason="the extra `step` is not installed")
+    (tmp_path / "a.step").write_text("garbage")
+    with pytest.raises(FileFormatError, match=r"a\.step cannot be read as STEP"):
+        load_part(Part("a", "step", tmp_path / "a.step", None, 1.0, Pose.identity(3)))
+
+
+def test_step_is_the_same_part_as_its_mesh() -> None:
+    pytest.importorskip("cascadio", reason="the extra `step` is not installed")
+    mesh = load_part(part(shared("trimesh/models/featuretype.STL"), 0.0254))
+    step = load_part(Part("a", "step", shared("trimesh/models/featuretype.STEP"), None, 1.0, Pose.identity(3)))
+    for end in ("low", "high"):
+        np.testing.assert_allclose(getattr(step, end), getattr(mesh, end), atol=1e-7)
+    assert step.is_one_shell
+    # each other's vertices lie on the surface, up to the chords of either
+    rng = np.random.default_rng(2)
+    for one, other in ((mesh, step), (step, mesh)):
+        points = one.vertices[rng.choice(len(one.vertices), 200)]
+        assert max(abs(other.surface.at(point)[0]) for point in points) < 1e-4
+    flats = [sorted(np.linalg.norm(facet.normal) for facet in g.facets)[-6:] for g in (mesh, step)]
+    np.testing.assert_allclose(flats[0], flats[1], rtol=2e-3)
+
+
+def test_scenes_are_flattened_and_keep_the_digits_of_their_file(tmp_path: Path) -> None:
+    import trimesh
+
+    vertices, triangles = box(0.03, 0.02, 0.01)
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    scene = trimesh.Scene()
+    turned = trimesh.transformations.euler_matrix(0.3, 0.4, 0.5)
+    mirrored = np.diag([-1.0, 1, 1, 1])
+    mirrored[0, 3] = 0.1
+    scene.add_geometry(mesh, "a", transform=turned)
+    scene.add_geometry(mesh, "b", geom_name="a", transform=mirrored)
+    scene.export(tmp_path / "two.glb")
+    geometry = load_part(part(tmp_path / "two.glb"))
+    assert geometry.notes == ()
+    assert len(geometry.facets) == 12
+    assert geometry.inside(np.array([[0.0, 0, 0], [0.1, 0, 0], [0.05, 0, 0]])).tolist() == [True, True, False]
+    # single precision, whatever the scene did with it
+    assert geometry.rounding.max() > 1e-10
 
 
 def test_open_mesh_names_edges_and_a_place(tmp_path: Path) -> None:
@@ -166,7 +224,7 @@ def test_real_parts(path: str, scale: float, size: tuple[float, ...], facets: in
 
 def test_real_part_with_holes_is_refused() -> None:
     path = "airo-models/airo_models/grippers/fingertips/originals/camera_arduino_holder.stl"
-    with pytest.raises(GeometryError, match=r"camera_arduino_holder\.stl.*open edges"):
+    with pytest.raises(GeometryError, match=r"camera_arduino_holder\.stl.*open edges.*a crack 0\.0076\d* um wide"):
         load_part(part(shared(path), 0.001))
 
 

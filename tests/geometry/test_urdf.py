@@ -1,4 +1,4 @@
-"""URDF parts: meshes and boxes of fixed links in the root's frame, and every way in which a file can be wrong."""
+"""URDF parts: meshes and simple shapes of fixed links, and every way in which a file can be wrong."""
 
 from __future__ import annotations
 
@@ -102,8 +102,12 @@ def test_file_names(tmp_path: Path, name: str) -> None:
         (one_link('<geometry><box size="1 -1 1"/></geometry>'), FileFormatError, ["positive", "1 -1 1"]),
         (one_link('<geometry><box size="1 nan 1"/></geometry>'), FileFormatError, ["link 'base'", "1 nan 1"]),
         (one_link('<geometry><box/></geometry>'), FileFormatError, ["3 numbers in 'size'"]),
-        (one_link('<geometry><cylinder radius="1" length="1"/></geometry>'), UnsupportedError, ["cylinder", "boxes"]),
-        (one_link('<geometry><sphere radius="1"/></geometry>'), UnsupportedError, ["<sphere>", "link 'base'"]),
+        (one_link('<geometry><cylinder radius="1"/></geometry>'), FileFormatError, ["1 numbers in 'length'"]),
+        (one_link('<geometry><cylinder radius="1" length="0"/></geometry>'), FileFormatError, ["length '0'"]),
+        (one_link('<geometry><sphere radius="-1"/></geometry>'), FileFormatError, ["link 'base'", "radius '-1'"]),
+        (one_link('<geometry><capsule length="1"/></geometry>'), FileFormatError, ["1 numbers in 'radius'"]),
+        (one_link('<geometry><ellipsoid a="1"/></geometry>'), UnsupportedError, ["<ellipsoid>", "boxes"]),
+        (one_link('<geometry><drake:ellipsoid a="1"/></geometry>'), UnsupportedError, ["<ellipsoid>", "link 'base'"]),
         (one_link("<geometry/>"), FileFormatError, ["no geometry"]),
         ("", FileFormatError, ["no links"]),
         ('<link name="a"/>', FileFormatError, ["no geometry"]),
@@ -150,6 +154,39 @@ def test_open_mesh_in_a_urdf_names_file_link_and_mesh(tmp_path: Path) -> None:
     write(tmp_path, (vertices, triangles[1:]), "hole.obj")
     with pytest.raises(GeometryError, match=r"robot\.urdf: link 'base', collision, mesh 'hole\.obj': .*3 open edges"):
         load(tmp_path, one_link(MESH.format(name="hole.obj", more="")))
+
+
+def test_drakes_prefix_needs_no_declaration(tmp_path: Path) -> None:
+    body = one_link('<geometry><drake:capsule radius="0.01" length="0.02"/></geometry><drake:proximity_properties/>')
+    geometry = load(tmp_path, body)
+    np.testing.assert_allclose(np.ptp(geometry.vertices, axis=0), [0.02, 0.02, 0.04])
+
+
+def test_many_shapes_of_many_links(tmp_path: Path) -> None:
+    links = "".join(
+        f'<link name="l{number}"><collision><geometry><box size="0.01 0.01 0.01"/></geometry></collision>'
+        f'<collision><origin xyz="0 0 0.02"/><geometry><sphere radius="0.002"/></geometry></collision></link>'
+        for number in range(20)
+    )
+    joints = "".join(
+        joint(f"j{number}", f"l{number}", f"l{number + 1}", origin='<origin xyz="0.02 0 0"/>') for number in range(19)
+    )
+    geometry = load(tmp_path, links + joints)
+    assert extent(geometry) == [[-0.005, -0.005, -0.005], [0.385, 0.005, 0.022]]
+    assert geometry.shell_of_triangle.max() == 39
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "airo-models/airo_models/grippers/robotiq_2f_85/urdf/robotiq_2f_85.urdf",
+        "example-robot-data/example-robot-data/robots/allegro_hand_description/urdf/allegro_right_hand.urdf",
+        "dex-urdf/robots/hands/barrett_hand/bhand_model.urdf",
+    ],
+)
+def test_hands_are_no_rigid_parts(path: str) -> None:
+    with pytest.raises(UnsupportedError, match=r"joint '.*': a part must be rigid; found type 'revolute'"):
+        load_part(part(shared(path)))
 
 
 def test_real_model() -> None:
