@@ -59,5 +59,7 @@ def judged_again(
         for index, facet in enumerate(facets)
     ]
     again = provenances(measures)
-    fitted = {index: Provenance("fitted", surface.normal_error) for index, surface in surface_of.items()}
-    return {index: again[index] for index in rest} | fitted
+    of_surfaces = {
+        i: Provenance("fitted" if s.normal_error else "exact", s.normal_error) for i, s in surface_of.items()
+    }
+    return {index: again[index] for index in rest} | of_surfaces

@@ -25,8 +25,8 @@ from fixture_design.geometry.shapes import (
     Vector3,
     Vertices,
 )
-from fixture_design.geometry.smooth_regions import smooth_surfaces
-from fixture_design.geometry.smooth_surface import SmoothSurface
+from fixture_design.geometry.smooth_regions import Region, smooth_surfaces
+from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
 from fixture_design.geometry.winding import shells, winding_number
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
@@ -117,11 +117,26 @@ class PartGeometry:
 
     @cached_property
     def smooth_surfaces(self) -> tuple[SmoothSurface, ...]:
-        """The round surfaces that facets stand for, in the order of their names; none of a faceted part."""
-        if self.faceted:
-            return ()
+        """The round surfaces that facets stand for, in the order of their names; of a faceted part those given."""
         noise = max(float(self.rounding.max()), self._facets.noise)
-        return smooth_surfaces(self.facets, self.vertices, self.triangles, noise)
+        return smooth_surfaces(
+            self.facets, self.vertices, self.triangles, noise, self._given_regions, look=not self.faceted
+        )
+
+    @cached_property
+    def _given_regions(self) -> list[Region]:
+        """The given surfaces, with facets in the place of triangles."""
+        return [
+            (
+                RoundShape(patch.kind, patch.point, patch.axis, patch.radius, patch.ring),
+                np.unique(self.facet_of_triangle[patch.triangles]).tolist(),
+            )
+            for patch in self.given
+        ]
+
+    @cached_property
+    def _given_facets(self) -> frozenset[int]:
+        return frozenset(facet for _, members in self._given_regions for facet in members)
 
     @cached_property
     def _surface_of_facet(self) -> dict[int, SmoothSurface]:
@@ -133,13 +148,14 @@ class PartGeometry:
 
     def surface_of_facet(self, facet: int) -> SmoothSurface | None:
         """The round surface that a facet stands for, if it is known."""
-        flat = self.facets[facet].provenance.kind == "exact"
-        return None if flat else self._surface_of_facet.get(facet)
+        return self._surface_of_facet.get(facet) if self._may_be_round(facet) else None
 
     def provenance_of(self, facet: int) -> Provenance:
         """Of a facet's normal, or of its round surface's; such surfaces are looked for when first asked."""
-        own = self.facets[facet].provenance
-        return own if own.kind == "exact" or self.faceted else self._judged_again[facet]
+        return self._judged_again[facet] if self._may_be_round(facet) else self.facets[facet].provenance
+
+    def _may_be_round(self, facet: int) -> bool:
+        return facet in self._given_facets or self.facets[facet].provenance.kind == "approximate"
 
     @cached_property
     def facet_of_triangle(self) -> OfTriangle:

@@ -40,33 +40,48 @@ _STEP = 0.7 * SMOOTH_ANGLE
 _VAGUE = 1e-2
 
 
+#: A round surface and the facets that stand for it.
+Region = tuple[RoundShape, list[int]]
+
+
 def smooth_surfaces(
-    facets: Sequence[Facet], vertices: Vertices, triangles: Triangles, noise: float
+    facets: Sequence[Facet],
+    vertices: Vertices,
+    triangles: Triangles,
+    noise: float,
+    given: Sequence[Region] = (),
+    look: bool = True,
 ) -> tuple[SmoothSurface, ...]:
     """The round surfaces of a part, named by kind in the order of their places.
 
     Args:
         facets: those whose provenance is approximate may stand for one.
         noise: how well vertices are known [m].
+        given: surfaces that are known exactly.
+        look: whether to look for others.
     """
     search = _Search.of(facets, vertices, triangles, noise)
-    for seed in search.seeds():
-        search.try_seed(seed)
-    search.merge()
-    found = sorted(search.found, key=lambda region: _order(region, search.size))
-    counts: dict[str, int] = {}
-    surfaces = []
-    for shape, members in found:
-        counts[shape.kind] = counts.get(shape.kind, 0) + 1
-        surfaces.append(search.surface(f"{shape.kind} {counts[shape.kind]}", shape, members))
-    return tuple(surface for surface in surfaces if surface.normal_error <= _VAGUE)
+    search.free -= {facet for _, members in given for facet in members}
+    if look:
+        for seed in search.seeds():
+            search.try_seed(seed)
+        search.merge()
+    fitted = [search.surface(region, known=False) for region in search.found]
+    known = [search.surface(region, known=True) for region in given]
+    found = [*known, *(surface for surface in fitted if surface.normal_error <= _VAGUE)]
+    found.sort(key=lambda surface: _order(surface, search.size))
+    counts = Counter[str]()
+    named = []
+    for surface in found:
+        counts[surface.kind] += 1
+        named.append(replace(surface, name=f"{surface.kind} {counts[surface.kind]}"))
+    return tuple(named)
 
 
-def _order(region: tuple[RoundShape, list[int]], size: float) -> tuple[str, list[float]]:
+def _order(surface: SmoothSurface, size: float) -> tuple[str, list[float]]:
     """Rounded, so that names do not hang on the last bit."""
-    shape, members = region
-    place = np.array([*shape.point, shape.radius]) / size
-    return shape.kind, [*np.round([*place, *shape.axis], 6).tolist(), float(members[0])]
+    place = np.array([*surface.point, surface.radius]) / size
+    return surface.kind, [*np.round([*place, *surface.axis], 6).tolist(), float(surface.facets[0])]
 
 
 def _one_way(shape: RoundShape) -> RoundShape:
@@ -90,7 +105,7 @@ class _Search:
     tolerance: float
     noise: float
     size: float
-    found: list[tuple[RoundShape, list[int]]] = field(default_factory=list)
+    found: list[Region] = field(default_factory=list)
     failures: Counter[int] = field(default_factory=Counter)
 
     @cached_property
@@ -135,7 +150,7 @@ class _Search:
 
     def try_seed(self, seed: int) -> None:
         """Look for a surface that the seed is on; if there is one, its facets are not free any more."""
-        best: tuple[RoundShape, list[int]] | None = None
+        best: Region | None = None
         for patch, kinds in self._patches(seed):
             for kind in kinds:
                 region = self._region(kind, patch)
@@ -151,7 +166,7 @@ class _Search:
 
     def merge(self) -> None:
         """Make one of surfaces that are one: a slot cuts a bore in two, and the halves have no facet in common."""
-        kept: list[tuple[RoundShape, list[int]]] = []
+        kept: list[Region] = []
         for shape, members in self.found:
             for index, (other, others) in enumerate(kept):
                 if other.kind == shape.kind and self._hollow(other, others) == self._hollow(shape, members):
@@ -170,18 +185,15 @@ class _Search:
         inside = set(members)
         return not any(o in self.free and o not in inside for facet in members for o in self.smooth[facet])
 
-    def surface(self, name: str, shape: RoundShape, members: list[int]) -> SmoothSurface:
+    def surface(self, region: Region, *, known: bool) -> SmoothSurface:
+        """The surface of a region, without a name yet; ``known``: it is exact, the vertices are rounded."""
+        shape, members = region
         points, middles = self._points_on(shape, members), self.middles[members]
-        error = float(np.abs(shape.offsets(points)).max())
-        off = normal_error(shape, points, middles, max(error, self.noise))
+        error = 0.0 if known else float(np.abs(shape.offsets(points)).max())
+        off = 0.0 if known else normal_error(shape, points, middles, max(error, self.noise))
+        sagitta = float(np.abs(shape.offsets(middles)).max())
         return SmoothSurface(
-            name,
-            shape,
-            self._hollow(shape, members),
-            np.array(members, dtype=np.int64),
-            error,
-            off,
-            float(np.abs(shape.offsets(middles)).max()),
+            shape.kind, shape, self._hollow(shape, members), np.array(members, dtype=np.int64), error, off, sagitta
         )
 
     def _patches(self, seed: int) -> Iterator[tuple[list[int], tuple[RoundKind, ...]]]:
@@ -210,7 +222,7 @@ class _Search:
             patch += edge
         return patch
 
-    def _region(self, kind: RoundKind, patch: list[int]) -> tuple[RoundShape, list[int]] | None:
+    def _region(self, kind: RoundKind, patch: list[int]) -> Region | None:
         """A surface fitted to a patch and all facets that lie on it, if they are enough to believe it."""
         shape, members = self._fit(kind, patch, self._points(patch)), patch
         for _ in range(3):

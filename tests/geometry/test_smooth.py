@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -191,3 +192,17 @@ def test_names_do_not_depend_on_the_order_of_triangles(tmp_path: Path) -> None:
     assert [s.name for s in one] == ["cylinder 1", "cylinder 2"]
     for first, second in zip(one, other, strict=True):
         np.testing.assert_allclose(first.point, second.point, atol=1e-12)
+
+
+def test_surfaces_that_urdf_gives_are_exact(tmp_path: Path) -> None:
+    file = tmp_path / "pin.urdf"
+    file.write_text(
+        '<robot name="pin"><link name="a"><collision><origin xyz="0.1 0 0" rpy="0.3 0.2 0"/><geometry>'
+        '<capsule radius="0.004" length="0.02"/></geometry></collision></link></robot>'
+    )
+    for faceted in (False, True):
+        geometry = load_part(replace(part(file), faceted=faceted))
+        assert sorted(kinds(geometry)) == ["cylinder", "sphere", "sphere"]
+        assert covered(geometry) == len(geometry.facets)
+        assert {surface.normal_error for surface in geometry.smooth_surfaces} == {0.0}
+        assert {geometry.provenance_of(facet).kind for facet in range(len(geometry.facets))} == {"exact"}
