@@ -9,12 +9,17 @@ from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
+from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
 
 __all__ = [
     "Facet",
     "GeometryContacts",
+    "Overlap",
     "PartGeometry",
+    "PlacedBody",
     "Polygon",
+    "PosedScene",
+    "Scene",
     "contact_of",
     "contacts_of_elements",
     "load_geometry",
