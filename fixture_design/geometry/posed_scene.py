@@ -44,10 +44,10 @@ class PlacedBody:
 
 @dataclass(frozen=True, eq=False)
 class Overlap:
-    """A proof that the part is in a body: the point ``p_W``, and by how much [m] (see `separation`)."""
+    """A proof that the part is in a body: a ``point`` in W, and by how much [m] (see `separation`)."""
 
     body: str
-    p_W: Vector3
+    point: Vector3
     depth: float
 
 
@@ -126,7 +126,8 @@ class PosedScene:
 
     def clearances(self, limit: float = np.inf) -> Mapping[str, float]:
         """The signed distance of the part from each body, by name [m]; see `separation`. Distances above the limit are
-        given as the limit."""
+        given as the limit.
+        """
         found = {
             body.name: separation(self.scene._part, solid, _then(X_BW, self.X_WP), limit).distance
             for body, solid, X_BW in self.scene._bodies

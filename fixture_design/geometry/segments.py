@@ -45,8 +45,8 @@ def near_pairs(
     return np.concatenate(ones), np.concatenate(others)
 
 
-def crossings(segments: Segments, corners: Corners) -> tuple[Indices, Weights]:
-    """Where segments cross triangles: for each crossing the segment's index and how far along it, 0 to 1.
+def crossings(segments: Segments, corners: Corners) -> tuple[Indices, Indices, Weights]:
+    """Where segments cross triangles: for each crossing the segment, the triangle, and how far along it, 0 to 1.
 
     A segment in the plane of a triangle does not cross it. A crossing on the edge between two triangles counts twice.
     Source: Moller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
@@ -66,7 +66,7 @@ def crossings(segments: Segments, corners: Corners) -> tuple[Indices, Weights]:
     at = np.einsum("ij,ij->i", second, turned) / divisor
     hit = through & (u >= -_BEYOND) & (v >= -_BEYOND) & (u + v <= 1 + _BEYOND)
     hit &= (at >= -_BEYOND) & (at <= 1 + _BEYOND)
-    return number[hit], np.clip(at[hit], 0.0, 1.0)
+    return number[hit], triangle[hit], np.clip(at[hit], 0.0, 1.0)
 
 
 def stretches(number: Indices, at: Weights) -> tuple[Indices, Weights]:

@@ -156,7 +156,8 @@ def _vertices_and_edges(sides: tuple[_Side, _Side], remaining: list[Indices], le
     edges = [_edges(side.mine.geometry, near) for side, near in zip(sides, remaining, strict=True)]
     for this, that in ((0, 1), (1, 0)):
         theirs = sides[this].back.points(corners[that].reshape(-1, 3)).reshape(-1, 3, 3)
-        number, at = stretches(*crossings(edges[this], theirs))
+        number, _, at = crossings(edges[this], theirs)
+        number, at = stretches(number, at)
         middles = edges[this][number, 0] + at[:, None] * (edges[this][number, 1] - edges[this][number, 0])
         sides[this].look(least, middles)
         if least.settled:

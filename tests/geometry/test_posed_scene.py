@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -116,7 +115,7 @@ def test_an_overlap_has_a_point_inside_both() -> None:
             continue
         found += 1
         assert overlap.depth > 1e-5
-        depth = max(posed.part_distances(overlap.p_W[None])[0], posed.body_distances("body", overlap.p_W[None])[0])
+        depth = max(posed.part_distances(overlap.point[None])[0], posed.body_distances("body", overlap.point[None])[0])
         assert depth <= 1e-12
     assert 5 < found < 55
 
@@ -306,7 +305,8 @@ def test_segments_cross_triangles_where_they_do() -> None:
             [[0.2, 0.2, 1], [0.2, 0.2, 2]],  # short
         ]
     )
-    number, at = crossings(segments, triangle)
+    number, triangles, at = crossings(segments, triangle)
+    assert triangles.tolist() == [0, 0]
     assert number.tolist() == [0, 2]
     np.testing.assert_allclose(at, [0.25, 0.5])
     number, at = stretches(number, at)
