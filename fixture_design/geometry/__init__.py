@@ -13,6 +13,7 @@ from fixture_design.geometry.polygon_sampling import given_polygon_points, sampl
 from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
 from fixture_design.geometry.sampling import SurfacePoints, given_points, grid_points, sample_surface
 from fixture_design.geometry.sampling_rules import Box, SamplingRules
+from fixture_design.geometry.slide import Slide, slide
 
 __all__ = [
     "Box",
@@ -25,6 +26,7 @@ __all__ = [
     "PosedScene",
     "SamplingRules",
     "Scene",
+    "Slide",
     "SurfacePoints",
     "contact_of",
     "contacts_of_elements",
@@ -37,4 +39,5 @@ __all__ = [
     "polygon_of",
     "sample_polygon",
     "sample_surface",
+    "slide",
 ]
