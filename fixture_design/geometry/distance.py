@@ -13,7 +13,7 @@ import numpy as np
 
 from fixture_design.arrays import Point
 from fixture_design.errors import GeometryError
-from fixture_design.geometry.shapes import Directions, PerDirection, Triangles, Vector3, Vertices
+from fixture_design.geometry.shapes import Directions, PerPoint, Triangles, Vector3, Vertices
 
 if TYPE_CHECKING:
     from pydrake.geometry import QueryObject, SceneGraph
@@ -57,7 +57,7 @@ class DistanceField:
             raise GeometryError(f"Drake's distance to {self._name!r} is not finite", found=f"{distance} at {p_PQ}")
         return distance, nearest
 
-    def distances(self, p_PQ: Directions) -> PerDirection:
+    def distances(self, p_PQ: Directions) -> PerPoint:
         """Signed distances of many points, shape (n, 3), negative inside; shape (n,) [m]. Checks are made once for all.
 
         Raises:

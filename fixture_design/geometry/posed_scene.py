@@ -28,7 +28,7 @@ from fixture_design.errors import GeometryError, UnknownNameError
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.pose_workers import over_poses
 from fixture_design.geometry.separation import Solid, separation
-from fixture_design.geometry.shapes import Directions, PerDirection, Vector3
+from fixture_design.geometry.shapes import Directions, PerPoint, Vector3
 from fixture_design.layout import Pose
 from fixture_design.tolerances import MERGE_VERTICES, SURFACE_GAP
 
@@ -91,8 +91,9 @@ class Scene:
 
         Args:
             limit: distances above it are not told apart and given as the limit: the lower, the faster.
-            processes: workers; each takes about a second to start, and asks Drake on its own (Drake's queries do not
-                run beside one another in one process). Results are the same with any number of them.
+            processes: workers, which ask Drake on their own (its queries do not run beside one another in one process).
+                They take one to three seconds to start, so that they pay where the poses take ten seconds or more.
+                Results are the same with any number of them.
 
         Raises:
             GeometryError: a pose that is none, or a worker that ended.
@@ -111,11 +112,11 @@ class PosedScene:
     scene: Scene
     X_WP: Pose
 
-    def part_distances(self, p_WQ: Directions) -> PerDirection:
+    def part_distances(self, p_WQ: Directions) -> PerPoint:
         """Signed distance of points in W, shape (n, 3), to the part, negative inside; shape (n,) [m]."""
         return self.scene._part.distances(self.X_WP.inverse().points(p_WQ))
 
-    def body_distances(self, name: str, p_WQ: Directions) -> PerDirection:
+    def body_distances(self, name: str, p_WQ: Directions) -> PerPoint:
         """Signed distance of points in W, shape (n, 3), to a body, negative inside; shape (n,) [m].
 
         Raises:

@@ -1,6 +1,7 @@
 """Candidate points on the surface of a part: spread evenly, on the grid of a modular plate, or as given.
 
-All lie on the surface to rounding and carry its outward normal. The same seed gives the same points.
+All lie on the surface to rounding and carry its outward normal, on strips of a round surface that surface's own. The
+same seed gives the same points.
 
     >>> rules = SamplingRules(facets=[3, 4], edge_margin=0.003)        # doctest: +SKIP
     >>> spots = sample_surface(geometry, X_WP, spacing=0.005, rules=rules)
@@ -67,7 +68,7 @@ def sample_surface(
     """Points spread over the surface where the rules let them be, none closer to another than ``spacing`` [m].
 
     Poisson disks: darts are thrown, by area, until hardly any spot is left. Distances are measured through space;
-    points whose normals are opposite (on the two sides of a wall, or of a slot) do not count as close.
+    points whose facets' normals are opposite (on the two sides of a wall, or of a slot) do not count as close.
 
     Args:
         X_WP: the part's pose; boxes of the rules and the result are in W. A moved part has moved points.
@@ -94,7 +95,7 @@ def sample_surface(
         along, u, v = rng.random((3, darts))
         triangle = chosen[np.minimum(np.searchsorted(reach, along * reach[-1], side="right"), len(chosen) - 1)]
         points = _within(geometry, triangle, u, v)
-        normals = _normals(geometry, geometry.facet_of_triangle[triangle])
+        normals = _flat_normals(geometry, geometry.facet_of_triangle[triangle])
         free = apart(points, normals, taken, taken_normals, spacing)
         free[free] = sieve.leaves(points[free])
         points, normals, triangle = points[free], normals[free], triangle[free]
@@ -199,13 +200,12 @@ class _Sieve:
     def result(self, points: Points, facets: OfTriangle) -> SurfacePoints:
         if not len(points):
             raise nothing_left(self.geometry.name, self.tried, self.removed, self.margin)
-        chosen = [self.geometry.facets[facet] for facet in facets.tolist()]
         return SurfacePoints(
             read_only(self.X_WP.points(points)),
-            read_only(self.X_WP.vectors(_normals(self.geometry, facets))),
+            read_only(self.X_WP.vectors(_normals(self.geometry, points, facets))),
             facets,
-            tuple(facet.name for facet in chosen),
-            tuple(facet.provenance for facet in chosen),
+            tuple(self.geometry.facets[facet].name for facet in facets.tolist()),
+            tuple(self.geometry.provenance_of(facet) for facet in facets.tolist()),
         )
 
 
@@ -236,7 +236,23 @@ def _within(geometry: PartGeometry, triangles: Indices, u: np.ndarray, v: np.nda
     return first + u * (second - first) + v * (third - first)
 
 
-def _normals(geometry: PartGeometry, facets: OfTriangle) -> Points:
+def _normals(geometry: PartGeometry, points: Points, facets: OfTriangle) -> Points:
+    """Unit normals at points of facets, in P: of the round surface that a facet stands for, else the facet's own.
+
+    On the axis of a round surface, which has no normal there, the facet's own too.
+    """
+    normals = _flat_normals(geometry, facets)
+    for facet in np.unique(facets).tolist():
+        surface = geometry.surface_of_facet(facet)
+        if surface is not None:
+            on_it = np.flatnonzero(facets == facet)
+            round_ones = surface.shape.directions(points[on_it]) * (-1.0 if surface.hollow else 1.0)
+            has_one = round_ones.any(axis=1)
+            normals[on_it[has_one]] = round_ones[has_one]
+    return normals
+
+
+def _flat_normals(geometry: PartGeometry, facets: OfTriangle) -> Points:
     """The unit normals of facets, in P."""
     normals = np.array([facet.normal for facet in geometry.facets])
     return (normals / np.linalg.norm(normals, axis=1, keepdims=True))[facets]

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Weights
-from fixture_design.geometry.shapes import Corners, PerDirection
+from fixture_design.geometry.shapes import Corners, PerPoint
 
 #: The two ends of each segment.
 Segments = Float[np.ndarray, "e 2 3"]
@@ -80,7 +80,7 @@ def stretches(number: Indices, at: Weights) -> tuple[Indices, Weights]:
     return number[1:][lasting], ((at[1:] + at[:-1]) / 2)[lasting]
 
 
-def segment_distances(first: Segments, second: Segments) -> tuple[PerDirection, Float[np.ndarray, "e 3"]]:
+def segment_distances(first: Segments, second: Segments) -> tuple[PerPoint, Float[np.ndarray, "e 3"]]:
     """The distance between each segment and its partner [m], and the nearest point of the first one.
 
     Source: Ericson, Real-time collision detection, 2004, section 5.1.9.

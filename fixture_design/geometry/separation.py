@@ -21,7 +21,7 @@ import numpy as np
 from fixture_design.arrays import Indices
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.segments import Segments, crossings, near_pairs, segment_distances, stretches
-from fixture_design.geometry.shapes import Directions, PerDirection, Vector3
+from fixture_design.geometry.shapes import Directions, PerPoint, Vector3
 from fixture_design.geometry.sphere_tree import SphereTree, sphere_tree
 from fixture_design.layout import Pose
 
@@ -37,7 +37,7 @@ class Solid:
     def of(cls, geometry: PartGeometry) -> Solid:
         return cls(geometry, sphere_tree(geometry.vertices, geometry.triangles))
 
-    def distances(self, points: Directions) -> PerDirection:
+    def distances(self, points: Directions) -> PerPoint:
         """Signed distance of points in the solid's own frame, shape (n, 3), negative inside; shape (n,) [m].
 
         Drake's sign is that of the nearest triangle; where several shells may overlap, a winding number gives it.
@@ -89,7 +89,7 @@ class _Least:
     def settled(self) -> bool:
         return self.distance < self.enough
 
-    def see(self, distances: PerDirection, points: Directions) -> None:
+    def see(self, distances: PerPoint, points: Directions) -> None:
         if len(distances) and distances.min() < self.distance:
             best = int(np.argmin(distances))
             self.distance, self.point = float(distances[best]), points[best]

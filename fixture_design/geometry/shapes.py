@@ -38,6 +38,5 @@ Vector3 = Float[np.ndarray, "3"]
 Directions = Float[np.ndarray, "n 3"]
 PerPoint = Float[np.ndarray, "n"]
 DirectionMask = Bool[np.ndarray, "n"]
-PerDirection = Float[np.ndarray, "n"]
 #: The normals of k facets that meet.
 Normals = Float[np.ndarray, "k 3"]

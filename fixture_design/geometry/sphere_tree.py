@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Indices
-from fixture_design.geometry.shapes import Directions, OfTriangle, PerDirection, Triangles, Vertices
+from fixture_design.geometry.shapes import Directions, OfTriangle, PerPoint, Triangles, Vertices
 
 #: Balls of one level that share a ball of the level above.
 _CHILDREN = 4
@@ -26,7 +26,7 @@ class Level:
     """Balls, shape (n, 3) and (n,) [m]; those of the next level inside ball i are ``_CHILDREN`` i and following."""
 
     centers: Directions
-    radii: PerDirection
+    radii: PerPoint
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ from fixture_design.geometry import (
     sample_surface,
 )
 from fixture_design.layout import Pose
-from tests.geometry.parts import box, circle, l_shape, loaded, part, polygon_part, prism, shared
+from tests.geometry.parts import box, circle, l_shape, loaded, part, polygon_part, prism, shared, unit
 
 HERE = Pose.identity(3)
 L_SHAPE = [[0, 0], [0.04, 0], [0.04, 0.02], [0.02, 0.02], [0.02, 0.04], [0, 0.04]]
@@ -44,10 +44,11 @@ def ell(tmp_path_factory: pytest.TempPathFactory) -> PartGeometry:
     return loaded(tmp_path_factory.mktemp("ell"), l_shape(0.04, 0.02))
 
 
-def closest(found: SurfacePoints) -> float:
-    """The smallest distance between two points whose normals are not opposite."""
+def closest(found: SurfacePoints, geometry: PartGeometry) -> float:
+    """The smallest distance between two points whose facets' normals are not opposite."""
+    flat = np.array([unit(geometry.facets[facet].normal) for facet in found.facets.tolist()])
     pairs = KDTree(found.points).query_pairs(0.01, output_type="ndarray")
-    pairs = pairs[np.einsum("ij,ij->i", *(found.normals[pairs[:, side]] for side in (0, 1))) > -0.5]
+    pairs = pairs[np.einsum("ij,ij->i", *(flat[pairs[:, side]] for side in (0, 1))) > -0.5]
     return float(np.linalg.norm(found.points[pairs[:, 0]] - found.points[pairs[:, 1]], axis=1).min(initial=0.01))
 
 
@@ -64,7 +65,7 @@ def to_box_edges(points: np.ndarray, sides: tuple[float, ...]) -> np.ndarray:
 def test_points_are_on_the_surface_spaced_and_leave_no_holes(ell: PartGeometry) -> None:
     found = sample_surface(ell, HERE, 0.003)
     assert np.abs(ell.surface.distances(found.points)).max() < 1e-9 * ell.half_diagonal
-    assert closest(found) >= 0.003
+    assert closest(found, ell) >= 0.003
     assert KDTree(found.points).query(anywhere(ell))[0].max() < 1.2 * 0.003
     assert 350 < len(found) < 800  # 0.7 or more for each square of the spacing's side
     for normal, facet, feature, provenance in zip(
@@ -87,7 +88,7 @@ def test_real_parts(file: str, scale: float, spacing: float) -> None:
     geometry = load_part(part(shared(file), scale))
     found = sample_surface(geometry, HERE, spacing)
     assert np.abs(geometry.surface.distances(found.points)).max() < 1e-9 * geometry.half_diagonal
-    assert closest(found) >= spacing
+    assert closest(found, geometry) >= spacing
     assert KDTree(found.points).query(anywhere(geometry))[0].max() < 1.5 * spacing
     # a step along the normal leads out of the material
     out = geometry.surface.distances(found.points + 1e-6 * found.normals)
@@ -132,6 +133,18 @@ def test_strips_of_a_shaft_have_no_edges_but_its_ends_have(tmp_path: Path) -> No
     assert found.points[around][:, 2].min() >= 0.004
     assert found.points[around][:, 2].max() <= 0.026
     assert np.linalg.norm(found.points[~around][:, :2], axis=1).max() <= 0.006
+
+
+def test_round_surfaces_give_their_own_normals(tmp_path: Path) -> None:
+    sleeve = loaded(tmp_path, prism(circle(0.02, 60), 0.03, [circle(0.01, 48)]))
+    found = sample_surface(sleeve, HERE, 0.003)
+    around = np.abs(found.normals[:, 2]) < 0.5
+    across = np.linalg.norm(found.points[:, :2], axis=1)
+    radial = np.column_stack([found.points[:, :2] / across[:, None], np.zeros(len(found))])
+    side = np.where(across > 0.015, 1.0, -1.0)[:, None]
+    assert {-1.0, 1.0} == set(side[around].ravel().tolist())
+    np.testing.assert_allclose(found.normals[around], (side * radial)[around], atol=1e-6)
+    assert [sleeve.provenance_of(facet) for facet in found.facets.tolist()] == list(found.provenance)
 
 
 def test_only_facets_that_are_allowed(ell: PartGeometry) -> None:
