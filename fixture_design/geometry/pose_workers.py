@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 
 import numpy as np
 
@@ -35,6 +32,11 @@ def over_poses(question: Callable[[Pose], float], poses: Sequence[Pose], process
         raise GeometryError("there must be one process or more", found=str(processes))
     if processes == 1:
         return np.array([question(pose) for pose in poses], dtype=np.float64)
+    # imported here: one process is the rule, and starting must be quick
+    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import get_context
+
     try:
         with ProcessPoolExecutor(processes, get_context("spawn"), _receive, (question,)) as workers:
             return np.array(list(workers.map(_answer, poses, chunksize=_AT_A_TIME)), dtype=np.float64)
