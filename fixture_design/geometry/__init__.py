@@ -9,16 +9,35 @@ from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
+from fixture_design.geometry.polygon_sampling import given_polygon_points, sample_polygon
+from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
+from fixture_design.geometry.sampling import SurfacePoints, given_points, grid_points, sample_surface
+from fixture_design.geometry.sampling_rules import Box, SamplingRules
+from fixture_design.geometry.slide import Slide, slide
 
 __all__ = [
+    "Box",
     "Facet",
     "GeometryContacts",
+    "Overlap",
     "PartGeometry",
+    "PlacedBody",
     "Polygon",
+    "PosedScene",
+    "SamplingRules",
+    "Scene",
+    "Slide",
+    "SurfacePoints",
     "contact_of",
     "contacts_of_elements",
+    "given_points",
+    "given_polygon_points",
+    "grid_points",
     "load_geometry",
     "load_part",
     "polygon_contact",
     "polygon_of",
+    "sample_polygon",
+    "sample_surface",
+    "slide",
 ]

@@ -13,7 +13,7 @@ import numpy as np
 
 from fixture_design.arrays import Point
 from fixture_design.errors import GeometryError
-from fixture_design.geometry.shapes import Triangles, Vector3, Vertices
+from fixture_design.geometry.shapes import Directions, PerPoint, Triangles, Vector3, Vertices
 
 if TYPE_CHECKING:
     from pydrake.geometry import QueryObject, SceneGraph
@@ -31,8 +31,13 @@ class DistanceField:
         Raises:
             GeometryError: Drake refuses the mesh.
         """
+        self._made_of = (vertices, triangles, name)
         self._name = name
         self._scene, self._context, self._query = guarded(lambda: _scene(vertices, triangles), name)
+
+    def __reduce__(self) -> tuple[type[DistanceField], tuple[Vertices, Triangles, str]]:
+        """Pickled as what it was made of, so that parts travel to worker processes: Drake's scenes do not."""
+        return DistanceField, self._made_of
 
     def at(self, p_PQ: Point) -> tuple[float, Vector3]:
         """Signed distance of a point, negative inside [m], and the nearest point of the surface, both in P.
@@ -51,6 +56,25 @@ class DistanceField:
         if not (np.isfinite(distance) and np.isfinite(nearest).all()):
             raise GeometryError(f"Drake's distance to {self._name!r} is not finite", found=f"{distance} at {p_PQ}")
         return distance, nearest
+
+    def distances(self, p_PQ: Directions) -> PerPoint:
+        """Signed distances of many points, shape (n, 3), negative inside; shape (n,) [m]. Checks are made once for all.
+
+        Raises:
+            GeometryError: as `at`.
+        """
+        if not np.isfinite(p_PQ).all():
+            bad = p_PQ[~np.isfinite(p_PQ).all(axis=1)][0]
+            raise GeometryError(f"no distance from {self._name!r} to a point that is not finite: {bad.tolist()}")
+        query = self._query.ComputeSignedDistanceToPoint
+        found = guarded(lambda: [result.distance for point in p_PQ for result in query(point)], self._name)
+        if len(found) != len(p_PQ):
+            raise GeometryError(f"Drake gave {len(found)} distances to {self._name!r}", expected=str(len(p_PQ)))
+        result = np.array(found, dtype=np.float64)
+        if not np.isfinite(result).all():
+            bad = p_PQ[~np.isfinite(result)][0]
+            raise GeometryError(f"Drake's distance to {self._name!r} is not finite", found=f"at {bad.tolist()}")
+        return result
 
 
 def guarded(call: Callable[[], _Result], name: str) -> _Result:
