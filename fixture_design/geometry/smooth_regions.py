@@ -167,18 +167,31 @@ class _Search:
     def merge(self) -> None:
         """Make one of surfaces that are one: a slot cuts a bore in two, and the halves have no facet in common."""
         kept: list[Region] = []
-        for shape, members in self.found:
-            for index, (other, others) in enumerate(kept):
-                if other.kind == shape.kind and self._hollow(other, others) == self._hollow(shape, members):
-                    both = sorted(others + members)
-                    points = np.vstack([self._points_on(shape, members), self._points_on(other, others)])
-                    near = np.abs(other.offsets(points)).max() <= _SAME * self.tolerance
-                    if near and (one := self._fit(shape.kind, both, points)) is not None:
-                        kept[index] = (_one_way(one), both)
-                        break
+        for region in self.found:
+            for index, other in enumerate(kept):
+                one = self._both(other, region) if self._alike(other[0], region[0]) else None
+                if one is not None:
+                    kept[index] = one
+                    break
             else:
-                kept.append((shape, members))
+                kept.append(region)
         self.found = kept
+
+    def _alike(self, one: RoundShape, other: RoundShape) -> bool:
+        """Whether two shapes may be one, by kind, size and direction: cheap, since all pairs are asked."""
+        unit = self.size if one.kind == "cone" else 1.0
+        if one.kind != other.kind or abs(one.radius - other.radius) * unit > _SAME * self.tolerance:
+            return False
+        return one.kind == "sphere" or bool(abs(one.axis @ other.axis) > np.cos(_STEP / 10))
+
+    def _both(self, one: Region, other: Region) -> Region | None:
+        """One surface with the facets of two, if their corners are on both and they have the material on one side."""
+        points = np.vstack([self._points_on(*one), self._points_on(*other)])
+        if np.abs(one[0].offsets(points)).max() > _SAME * self.tolerance or self._hollow(*one) != self._hollow(*other):
+            return None
+        members = sorted(one[1] + other[1])
+        shape = self._fit(one[0].kind, members, points)
+        return None if shape is None else (_one_way(shape), members)
 
     def _complete(self, members: list[int]) -> bool:
         """Whether the surface ends all around: no free facet goes on smoothly, as those of a torus do beside a band."""
