@@ -114,3 +114,6 @@ SLIVER_NOISE = 1e-2
 
 #: A ball's centre further from the surface than this, relative to the size of the part, has a direction from it [-].
 OFF_SURFACE = 1e-9
+
+#: Sine of the angle between a tip's direction and the surface's normal below which its projection means nothing [-].
+ALONG_NORMAL = 1e-3

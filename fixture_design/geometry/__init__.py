@@ -3,7 +3,7 @@
 Drake, trimesh and shapely are imported when something is read or measured, not with this package.
 """
 
-from fixture_design.geometry.contact import contact_of, polygon_contact
+from fixture_design.geometry.contact import contact_of, contacts_of_element, polygon_contact, polygon_contacts
 from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
@@ -29,6 +29,7 @@ __all__ = [
     "Slide",
     "SurfacePoints",
     "contact_of",
+    "contacts_of_element",
     "contacts_of_elements",
     "given_points",
     "given_polygon_points",
@@ -36,6 +37,7 @@ __all__ = [
     "load_geometry",
     "load_part",
     "polygon_contact",
+    "polygon_contacts",
     "polygon_of",
     "sample_polygon",
     "sample_surface",

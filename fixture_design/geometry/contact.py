@@ -1,6 +1,8 @@
-"""From an element that should touch the part to the contact it makes: where, with which normals, how well known."""
+"""From an element that should touch the part to the contacts it makes: where, with which normals, how well known."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,10 +10,49 @@ from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
 from fixture_design.errors import DimensionError, GeometryError, InputError, OffSurfaceError, UnsupportedError
 from fixture_design.geometry.ball import ball_normal, check_room
+from fixture_design.geometry.line import line_touches
+from fixture_design.geometry.local import LocalSurface
+from fixture_design.geometry.pad import pad_touches
 from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.planar_line import planar_line_touches
 from fixture_design.geometry.polygon import Polygon, polygon_of
 from fixture_design.geometry.surface import SolidSurface, Surface
-from fixture_design.layout import Element, Part, PointTip, Pose, SphereTip
+from fixture_design.geometry.tip_touch import TipTouch
+from fixture_design.layout import Element, LineTip, PadTip, Part, PinTip, PointTip, Pose, SoftTip, SphereTip
+
+#: Decimals of a metre that count in the order of an element's contacts.
+_ORDER_DECIMALS = 9
+
+
+def contacts_of_element(
+    element: Element,
+    geometry: PartGeometry,
+    X_WP: Pose,
+    friction: float,
+    surface_gap: float,
+    part_name: str | None = None,
+) -> tuple[Contact, ...]:
+    """The contacts between an element and a solid part, in W, at the surface point nearest to ``element.at``.
+
+    A point tip takes the logic of the place: one normal on a facet, the OR of a convex edge, the AND of a concave one;
+    so does a soft tip. A ball takes one normal, and needs room. Pads and lines touch in several points: `pad_touches`,
+    `line_touches`.
+
+    Args:
+        friction: the layout's; the element's own comes first.
+        surface_gap: largest distance between ``at`` and the surface [m].
+        part_name: for messages, by default the geometry's.
+
+    Returns:
+        one contact with the element's name, or several named K1#1, K1#2, ... in the order of their coordinates in W.
+
+    Raises:
+        OffSurfaceError: ``at`` is further from the surface than the gap.
+        UnsupportedError: pins; see `local_surface`, `line_touches`.
+        GeometryError: no room for the tip, a size that is not positive, a pad or line that does not lie flat.
+        DimensionError: ``at`` or a direction has not three coordinates.
+    """
+    return _contacts(element, SolidSurface(geometry), X_WP, friction, surface_gap, part_name or geometry.name)
 
 
 def contact_of(
@@ -22,29 +63,22 @@ def contact_of(
     surface_gap: float,
     part_name: str | None = None,
 ) -> Contact:
-    """The contact between an element and a solid part, in W, at the surface point nearest to ``element.at``.
-
-    A point tip takes the logic of the place: one normal on a facet, the OR of a convex edge, the AND of a concave one.
-    A ball takes one normal, and needs room.
-
-    Args:
-        friction: the layout's; the element's own comes first.
-        surface_gap: largest distance between ``at`` and the surface [m].
-        part_name: for messages, by default the geometry's.
+    """The one contact of an element whose tip touches in a point; arguments and errors as in `contacts_of_element`.
 
     Raises:
-        OffSurfaceError: ``at`` is further from the surface than the gap.
-        UnsupportedError: other tips than points and balls; see `local_surface`.
-        GeometryError: a ball where there is no room for it, a radius that is not positive.
-        DimensionError: ``at`` has not three coordinates.
+        UnsupportedError: a pad, line or pin, which may make several.
     """
-    return _contact(element, SolidSurface(geometry), X_WP, friction, surface_gap, part_name or geometry.name)
+    _check_single(element, "contacts_of_element")
+    (contact,) = contacts_of_element(element, geometry, X_WP, friction, surface_gap, part_name)
+    return contact
 
 
-def polygon_contact(
+def polygon_contacts(
     element: Element, part: Part, friction: float, surface_gap: float, polygon: Polygon | None = None
-) -> Contact:
-    """The contact between an element and a planar part, in W, placed at ``part.pose``; the rest as in `contact_of`.
+) -> tuple[Contact, ...]:
+    """The contacts between an element and a planar part, in W, placed at ``part.pose``; as `contacts_of_element`.
+
+    In the plane a pad is a line as long as its width, and a soft tip is a point: there is no turning about a normal.
 
     Args:
         polygon: of the part, where it is checked already.
@@ -53,57 +87,111 @@ def polygon_contact(
         GeometryError: also for a polygon that is none, see `polygon_of`.
     """
     polygon = polygon or polygon_of(part)
-    return _contact(element, polygon, part.pose, friction, surface_gap, part.name)
+    return _contacts(element, polygon, part.pose, friction, surface_gap, part.name)
 
 
-def _contact(element: Element, surface: Surface, X_WP: Pose, friction: float, gap: float, part_name: str) -> Contact:
-    radius = _radius(element)
-    p_PA = X_WP.inverse().points(_checked(element, len(X_WP.translation))[None])[0]
+def polygon_contact(
+    element: Element, part: Part, friction: float, surface_gap: float, polygon: Polygon | None = None
+) -> Contact:
+    """The one contact of an element whose tip touches in a point; otherwise as `polygon_contacts`.
+
+    Raises:
+        UnsupportedError: a pad, line or pin, which may make several.
+    """
+    _check_single(element, "polygon_contacts")
+    (contact,) = polygon_contacts(element, part, friction, surface_gap, polygon)
+    return contact
+
+
+def _contacts(
+    element: Element, surface: Surface, X_WP: Pose, friction: float, gap: float, part_name: str
+) -> tuple[Contact, ...]:
+    _check_sizes(element)
+    dimension = len(X_WP.translation)
+    p_PA = X_WP.inverse().points(_checked(element, element.at, "at", dimension)[None])[0]
     distance, p_PC = surface.nearest(p_PA)
     if abs(distance) > gap:
         raise OffSurfaceError(element.name, part_name, distance, surface.feature(p_PC), gap)
     try:
-        local = surface.local(p_PC)
-        clauses, provenance = local.clauses, local.provenance
-        if radius is not None:
-            normal, provenance = ball_normal(surface, local, p_PA, p_PC)
-            check_room(surface, local, p_PC, normal, radius, gap)
-            clauses = ((normal,),)
+        touches = _touches(element, surface, surface.local(p_PC), X_WP, p_PA, p_PC, gap)
     except InputError as error:
         error.place = error.place or f"element {element.name!r}"
         raise
-    return Contact(
-        element.name,
-        element.role,
-        X_WP.points(p_PC[None])[0],
-        tuple(tuple(X_WP.vectors(np.array(clause))) for clause in clauses),
-        friction if element.friction is None else element.friction,
-        provenance,
-        distance,
-        local.feature,
+    points = X_WP.points(np.array([touch.point for touch in touches]))
+    order = np.lexsort(np.round(points, _ORDER_DECIMALS).T[::-1]).tolist()
+    return tuple(
+        Contact(
+            element.name if len(touches) == 1 else f"{element.name}#{number}",
+            element.role,
+            points[index],
+            tuple(tuple(X_WP.vectors(np.array(clause))) for clause in touches[index].clauses),
+            friction if element.friction is None else element.friction,
+            touches[index].provenance,
+            distance,
+            touches[index].feature,
+        )
+        for number, index in enumerate(order, start=1)
     )
 
 
-def _radius(element: Element) -> float | None:
-    """Of a ball; None for a point."""
-    if isinstance(element.tip, PointTip):
-        return None
-    if not isinstance(element.tip, SphereTip):
+def _touches(
+    element: Element, surface: Surface, local: LocalSurface, X_WP: Pose, p_PA: Point, p_PC: Point, gap: float
+) -> Sequence[TipTouch]:
+    tip = element.tip
+    if isinstance(tip, SphereTip):
+        normal, provenance = ball_normal(surface, local, p_PA, p_PC)
+        check_room(surface, local, p_PC, normal, tip.radius, gap)
+        return (TipTouch(p_PC, ((normal,),), provenance, local.feature),)
+    if isinstance(tip, PadTip | LineTip):
+        along = X_WP.inverse().vectors(_checked(element, tip.along, "along", len(p_PC))[None])[0]
+        if isinstance(surface, Polygon):
+            length = tip.width if isinstance(tip, PadTip) else tip.length
+            return planar_line_touches(surface, local, p_PC, length, along, gap)
+        assert isinstance(surface, SolidSurface)
+        if isinstance(tip, PadTip):
+            return pad_touches(surface.geometry, local, p_PC, tip, along, gap)
+        return line_touches(surface.geometry, local, p_PC, tip, along, gap)
+    return (TipTouch(p_PC, local.clauses, local.provenance, local.feature),)
+
+
+def _check_sizes(element: Element) -> None:
+    tip = element.tip
+    match tip:
+        case PointTip():
+            return
+        case SphereTip():
+            what, sizes = "a ball needs a radius", (tip.radius,)
+        case SoftTip():
+            what, sizes = "a soft tip needs a radius", (tip.radius,)
+        case PadTip():
+            what, sizes = "a pad needs a width and a height", (tip.width, tip.height)
+        case LineTip():
+            what, sizes = "a line needs a length", (tip.length,)
+        case PinTip():
+            raise UnsupportedError(f"element {element.name!r}: this version does not evaluate pin tips")
+    if not all(np.isfinite(size) and size > 0 for size in sizes):
+        found = ", ".join(str(size) for size in sizes)
+        raise GeometryError(f"element {element.name!r}: {what} > 0", found=found, expected="metres")
+
+
+def _checked(element: Element, values: Point, key: str, dimension: int) -> Point:
+    """A point or direction of an element, as an array of the right length."""
+    found = np.asarray(values, dtype=np.float64)
+    if found.shape != (dimension,):
+        raise DimensionError(
+            f"element {element.name!r}: `{key}` needs {dimension} coordinates", found=str(found.tolist())
+        )
+    if not np.isfinite(found).all():
+        raise GeometryError(f"element {element.name!r}: `{key}` is not finite", found=str(found.tolist()))
+    if key == "along" and not found.any():
+        raise GeometryError(f"element {element.name!r}: `along` has zero length", expected="a direction")
+    return found
+
+
+def _check_single(element: Element, instead: str) -> None:
+    if not isinstance(element.tip, PointTip | SphereTip | SoftTip):
         kind = type(element.tip).__name__.removesuffix("Tip").lower()
         raise UnsupportedError(
-            f"element {element.name!r}: this version does not evaluate {kind} tips", expected="a point or sphere tip"
+            f"element {element.name!r}: {kind} tips may make several contacts",
+            expected=f"a point or sphere tip, or a soft one; or `{instead}`",
         )
-    if not (np.isfinite(element.tip.radius) and element.tip.radius > 0):
-        raise GeometryError(
-            f"element {element.name!r}: a ball needs a radius > 0", found=str(element.tip.radius), expected="metres"
-        )
-    return element.tip.radius
-
-
-def _checked(element: Element, plane: int) -> Point:
-    at = np.asarray(element.at, dtype=np.float64)
-    if at.shape != (plane,):
-        raise DimensionError(f"element {element.name!r}: `at` needs {plane} coordinates", found=str(at.tolist()))
-    if not np.isfinite(at).all():
-        raise GeometryError(f"element {element.name!r}: `at` is not finite", found=str(at.tolist()))
-    return at

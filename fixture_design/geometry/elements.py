@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
 from fixture_design.errors import InputError, UnsupportedError
-from fixture_design.geometry.contact import contact_of, polygon_contact
+from fixture_design.geometry.contact import contacts_of_element, polygon_contacts
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
@@ -43,7 +43,7 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
         geometry: of ``layout.part``, where it is loaded already; a batch of layouts loads its part once.
 
     Raises:
-        InputError: elements without a part; a part that does not fit the layout's space; see `contact_of`.
+        InputError: elements without a part; a part that does not fit the layout's space; see `contacts_of_element`.
         UnsupportedError: the layout has bodies.
     """
     if layout.bodies:
@@ -59,7 +59,7 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
         raise InputError(problem, source=layout.source, found=f"kind {part.kind!r}")
     geometry = geometry or load_geometry(part)
     try:
-        contacts = tuple(_contact(element, layout, part, geometry) for element in layout.elements)
+        contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, geometry))
     except InputError as error:
         if layout.source:
             error.within(layout.source)
@@ -68,7 +68,7 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     return GeometryContacts(contacts, geometry.notes, center, geometry.half_diagonal)
 
 
-def _contact(element: Element, layout: Layout, part: Part, geometry: PartGeometry | Polygon) -> Contact:
+def _contacts(element: Element, layout: Layout, part: Part, geometry: PartGeometry | Polygon) -> tuple[Contact, ...]:
     if isinstance(geometry, Polygon):
-        return polygon_contact(element, part, layout.friction, layout.surface_gap, geometry)
-    return contact_of(element, geometry, part.pose, layout.friction, layout.surface_gap, part.name)
+        return polygon_contacts(element, part, layout.friction, layout.surface_gap, geometry)
+    return contacts_of_element(element, geometry, part.pose, layout.friction, layout.surface_gap, part.name)

@@ -10,16 +10,19 @@ from fixture_design.geometry.shapes import Corners, PerTriangle, Vector3
 
 
 def touched_triangles(geometry: PartGeometry, p_PC: Point, within: float) -> Indices:
-    """The triangles within a distance [m] of a surface point: one on a facet, two on an edge, more at an apex.
-
-    Boxes first: of thousands of triangles a handful is left to be measured.
-    """
-    low, high = geometry.triangle_boxes
-    candidates = np.flatnonzero((low[0] <= p_PC[0] + within) & (high[0] >= p_PC[0] - within))
-    for axis in (1, 2):
-        near = (low[axis, candidates] <= p_PC[axis] + within) & (high[axis, candidates] >= p_PC[axis] - within)
-        candidates = candidates[near]
+    """The triangles within a distance [m] of a surface point: one on a facet, two on an edge, more at an apex."""
+    candidates = triangles_in_box(geometry, p_PC - within, p_PC + within)
     return candidates[distances(geometry.vertices[geometry.triangles[candidates]], p_PC) <= within]
+
+
+def triangles_in_box(geometry: PartGeometry, lowest: Vector3, highest: Vector3) -> Indices:
+    """The triangles whose boxes meet a box [m]: of thousands of triangles a handful is left to be measured."""
+    low, high = geometry.triangle_boxes
+    candidates = np.flatnonzero((low[0] <= highest[0]) & (high[0] >= lowest[0]))
+    for axis in (1, 2):
+        near = (low[axis, candidates] <= highest[axis]) & (high[axis, candidates] >= lowest[axis])
+        candidates = candidates[near]
+    return candidates
 
 
 def clearance(geometry: PartGeometry, p_PC: Point, touched: Indices) -> float:

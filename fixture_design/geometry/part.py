@@ -93,12 +93,12 @@ class PartGeometry:
         """Centre of the bounding box in P, shape (3,) [m]."""
         return (self.low + self.high) / 2
 
-    @property
+    @cached_property
     def half_diagonal(self) -> float:
         """Half the diagonal of the bounding box [m]."""
         return float(np.linalg.norm(self.high - self.low)) / 2
 
-    @property
+    @cached_property
     def on_edge(self) -> float:
         """How near to an edge a point counts as on it [m]: no nearer than the edge itself is known."""
         return max(
