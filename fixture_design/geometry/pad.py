@@ -53,12 +53,13 @@ def flat_normal(local: LocalSurface, what: str) -> Point:
     return local.clauses[0][0]
 
 
-def _overlap_hull(place: Footprint, precision: float) -> Float[np.ndarray, "n 2"]:
+def _overlap_hull(place: Footprint, precision: float) -> Float[np.ndarray, "_ 2"]:
     """Corners of the convex hull of rectangle and triangles, in order, none within ``precision`` of its neighbours."""
     import shapely
 
     width, height = place.half
-    pieces = shapely.clip_by_rect(shapely.polygons(place.flat), -width, -height, width, height)
+    triangles = np.array(shapely.polygons(place.flat))
+    pieces = np.array(shapely.clip_by_rect(triangles, -width, -height, width, height))
     touching = pieces[shapely.area(pieces) > precision**2]
     if not len(touching):
         raise GeometryError("a pad does not overlap the facet at all", expected="a larger pad")
@@ -66,7 +67,7 @@ def _overlap_hull(place: Footprint, precision: float) -> Float[np.ndarray, "n 2"
     return _without_blunt(shapely.get_coordinates(hull)[:-1], precision)
 
 
-def _without_blunt(corners: Float[np.ndarray, "n 2"], precision: float) -> Float[np.ndarray, "n 2"]:
+def _without_blunt(corners: Float[np.ndarray, "_ 2"], precision: float) -> Float[np.ndarray, "_ 2"]:
     """A convex polygon without corners that are within ``precision`` of the line between their neighbours."""
     while len(corners) > 3:
         before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
