@@ -25,6 +25,8 @@ from fixture_design.layout import Answer, Finding, Motion
 
 #: Edges of the pyramids, coarse to fine.
 EDGES = (8, 16, 32, 64, 128, 256, 512)
+#: With soft contacts, whose cones take about half the square of this many.
+SOFT_EDGES = (8, 16, 32)
 
 
 def force_closure(restraint: Restraint) -> Finding:
@@ -56,7 +58,8 @@ def _in_the_plane(restraint: Restraint) -> Finding:
 
 def _in_space(restraint: Restraint) -> Finding:
     """Inner and outer pyramids with more and more edges, until they agree."""
-    for edges in EDGES:
+    steps = SOFT_EDGES if any(contact.torsion for contact in restraint.contacts) else EDGES
+    for edges in steps:
         inner = _pyramids(restraint, edges, "inner")
         settled = UnionQuestions(inner, restraint.tolerances).closed()
         if settled.truth:
@@ -68,8 +71,8 @@ def _in_space(restraint: Restraint) -> Finding:
         against = _unopposed(restraint, UnionQuestions(outer, restraint.tolerances).closed(), outer)
         if against is not None:
             return Finding(Answer.NO, _margin(restraint, edges, "outer"), against, against.residual, edges)
-    reason = f"pyramids of {EDGES[-1]} edges inside and outside the friction cones do not agree: a tie with the cones"
-    return Finding(Answer.UNDECIDED, edges=EDGES[-1], reason=reason)
+    reason = f"pyramids of {steps[-1]} edges inside and outside the friction cones do not agree: a tie with the cones"
+    return Finding(Answer.UNDECIDED, edges=steps[-1], reason=reason)
 
 
 def _holds(restraint: Restraint, settled: Settled, inner: Constraints, edges: int) -> Finding:
@@ -102,7 +105,9 @@ def _unopposed(restraint: Restraint, settled: Settled, pyramids: Constraints) ->
 
 
 def friction_value(restraint: Restraint, constraints: Constraints, motion: Vector) -> float:
-    """max over clauses of min over alternatives of  n . v + mu |v_t| + error, v the contact point's motion.
+    """max over clauses of min over alternatives of  n . v + mu |[v_t; c w_n]| + error, v the contact point's motion.
+
+    w_n is the turning about the normal, which soft contacts with torsion c resist.
 
     It is the largest work that unit-normal forces of the cone (the circular one, no pyramid) do against the motion:
     where it is not positive, no friction force opposes the motion. ``motion`` is in the constraints' coordinates.
@@ -120,5 +125,11 @@ def friction_value(restraint: Restraint, constraints: Constraints, motion: Vecto
     tangential = velocities - normal_parts[:, None] * constraints.rows[:, :plane]
     friction = np.array([c.friction for c in restraint.contacts])[owner]
     sizes = np.hypot(1.0, friction)
-    products = normal_parts + friction * np.linalg.norm(tangential, axis=1) + constraints.errors * sizes
+    sliding = np.linalg.norm(tangential, axis=1)
+    errors = constraints.errors * sizes
+    if plane == 3:
+        torsion = np.array([c.torsion for c in restraint.contacts])[owner] / constraints.scale.length
+        sliding = np.hypot(sliding, torsion * (constraints.rows[:, :3] @ turning))
+        errors += friction * torsion * np.array([c.provenance.normal_error for c in restraint.contacts])[owner]
+    products = normal_parts + friction * sliding + errors
     return float(constraints.clause_values(products).max())

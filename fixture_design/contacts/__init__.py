@@ -3,6 +3,7 @@
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
 from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, unit_normal
 from fixture_design.contacts.friction import Side, friction_edges
+from fixture_design.contacts.limit_surface import contact_edges, torsion_of_patch
 from fixture_design.contacts.wrench import face_vectors, motion_about_origin, motion_scaled, velocity
 
 __all__ = [
@@ -15,11 +16,13 @@ __all__ = [
     "Scale",
     "Side",
     "constraints_of",
+    "contact_edges",
     "face_vectors",
     "friction_edges",
     "motion_about_origin",
     "motion_scaled",
     "scale_of",
+    "torsion_of_patch",
     "unit_normal",
     "velocity",
 ]

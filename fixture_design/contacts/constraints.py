@@ -15,7 +15,8 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Point, Rows, Weights
 from fixture_design.contacts.contact import Contact
-from fixture_design.contacts.friction import Side, friction_edges
+from fixture_design.contacts.friction import Side
+from fixture_design.contacts.limit_surface import contact_edges
 from fixture_design.contacts.wrench import face_vectors
 from fixture_design.errors import ContactError, DimensionError
 
@@ -111,7 +112,7 @@ def constraints_of(
         contacts: at least one, all planar or all spatial.
         scale: reference and length; by default `scale_of` the contacts.
         with_friction: rows for the edges of the friction cones instead of the normals.
-        edges, side: of the friction cones in space, see `friction_edges`.
+        edges, side: of the friction cones in space, see `contact_edges`.
 
     Raises:
         ContactError: no contacts.  DimensionError: planar and spatial contacts mixed.
@@ -121,7 +122,7 @@ def constraints_of(
     if len({contact.dimension for contact in contacts}) != 1:
         raise DimensionError("planar and spatial contacts cannot be mixed")
     scale = scale or scale_of(contacts)
-    normals, points, errors = [], [], []
+    normals, points, moments, errors = [], [], [], []
     alternative, clause_of, contact_of = [], [], []
     for index, contact in enumerate(contacts):
         lever = contact.point - scale.reference
@@ -130,14 +131,17 @@ def constraints_of(
         for clause in contact.clauses:
             for normal in clause:
                 friction = contact.friction if with_friction else 0.0
-                rays = friction_edges(normal, friction, edges, side)
+                rays, spins = contact_edges(normal, friction, contact.torsion, edges, side)
                 normals.append(rays)
+                moments.append(spins)
                 points.append(np.broadcast_to(lever, rays.shape))
-                errors += [error * float(np.hypot(1.0, friction))] * len(rays)
+                spin_error = contact.provenance.normal_error * friction * contact.torsion / scale.length
+                errors += [error * float(np.hypot(1.0, friction)) + spin_error] * len(rays)
                 alternative += [len(clause_of)] * len(rays)
                 clause_of.append(len(contact_of))
             contact_of.append(index)
     rows = face_vectors(np.vstack(points), np.vstack(normals))
+    rows[:, len(scale.reference) :] += np.vstack(moments)
     rows[:, len(scale.reference) :] /= scale.length
     return Constraints(
         rows,

@@ -56,9 +56,13 @@ class Contact:
         provenance: of the normals.
         distance: signed distance between surface and tip as it was found [m], None for contacts given outright.
         feature: name of the facet, edge or apex touched, None for contacts given outright.
+        torsion: of a soft tip in space, c >= 0 [m]: with friction mu it also carries moments about the normal, up to
+            mu c a newton (`limit_surface`).
+        clearance: of a pin in its hole [m]: it touches at nominal, but does not keep the part in while it is open.
 
     Raises:
-        ContactError: no normal, zero or non-finite normal, non-finite or absurdly far point, negative friction.
+        ContactError: no normal, zero or non-finite normal, non-finite or absurdly far point, negative friction, torsion
+            or clearance, torsion in the plane.
         DimensionError: point and normals of different or unusable length.
 
     Example:
@@ -74,6 +78,8 @@ class Contact:
     provenance: Provenance = field(default_factory=Provenance)
     distance: float | None = None
     feature: str | None = None
+    torsion: float = 0.0
+    clearance: float = 0.0
 
     def __post_init__(self) -> None:
         point = read_only(self.point)
@@ -96,6 +102,11 @@ class Contact:
         if not 0 <= self.friction <= MOST_FRICTION:
             limits = f"between 0 and {MOST_FRICTION:g}"
             raise ContactError(f"contact {self.name!r}: friction must be a number {limits}, not {self.friction}")
+        for what, length in (("torsion", self.torsion), ("clearance", self.clearance)):
+            if not 0 <= length <= FARTHEST:
+                raise ContactError(f"contact {self.name!r}: {what} must be a length >= 0, not {length}")
+        if self.torsion and len(point) == 2:
+            raise ContactError(f"contact {self.name!r}: there is no torsion in the plane")
 
     @classmethod
     def of(

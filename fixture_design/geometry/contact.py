@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fixture_design.arrays import Point
-from fixture_design.contacts import Contact
+from fixture_design.contacts import Contact, torsion_of_patch
 from fixture_design.errors import DimensionError, GeometryError, InputError, OffSurfaceError, UnsupportedError
 from fixture_design.geometry.ball import ball_normal, check_room
 from fixture_design.geometry.line import line_touches
@@ -35,8 +35,8 @@ def contacts_of_element(
     """The contacts between an element and a solid part, in W, at the surface point nearest to ``element.at``.
 
     A point tip takes the logic of the place: one normal on a facet, the OR of a convex edge, the AND of a concave one;
-    so does a soft tip. A ball takes one normal, and needs room. Pads and lines touch in several points: `pad_touches`,
-    `line_touches`.
+    so does a soft tip, which on a single normal also resists turning about it. A ball takes one normal, and needs room.
+    Pads and lines touch in several points: `pad_touches`, `line_touches`.
 
     Args:
         friction: the layout's; the element's own comes first.
@@ -129,6 +129,8 @@ def _contacts(
             touches[index].provenance,
             distance,
             touches[index].feature,
+            touches[index].torsion,
+            touches[index].clearance,
         )
         for number, index in enumerate(order, start=1)
     )
@@ -151,7 +153,10 @@ def _touches(
         if isinstance(tip, PadTip):
             return pad_touches(surface.geometry, local, p_PC, tip, along, gap)
         return line_touches(surface.geometry, local, p_PC, tip, along, gap)
-    return (TipTouch(p_PC, local.clauses, local.provenance, local.feature),)
+    # where several normals meet, which of them turning would be about is open: none, to be safe
+    soft = isinstance(tip, SoftTip) and local.shape == "flat" and len(p_PC) == 3
+    torsion = torsion_of_patch(tip.radius) if soft else 0.0
+    return (TipTouch(p_PC, local.clauses, local.provenance, local.feature, torsion),)
 
 
 def _check_sizes(element: Element) -> None:

@@ -16,3 +16,5 @@ class TipTouch:
     clauses: tuple[tuple[Point, ...], ...]
     provenance: Provenance
     feature: str
+    torsion: float = 0.0
+    clearance: float = 0.0

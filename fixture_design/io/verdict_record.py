@@ -106,6 +106,8 @@ def _contact(contact: Contact) -> Data:
         "distance": plain_numbers(contact.distance),
         "feature": contact.feature,
         "friction": plain_numbers(contact.friction),
+        "torsion": plain_numbers(contact.torsion),
+        "clearance": plain_numbers(contact.clearance),
         "provenance": {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)},
     }
 

@@ -111,6 +111,8 @@ class FoundContactRecord(Record):
     distance: Number | None = Field(description="between surface and tip [m]; null for contacts given outright")
     feature: str | None
     friction: Number
+    torsion: Number = Field(0.0, description="of soft tips: moment about the normal a newton and unit of friction [m]")
+    clearance: Number = Field(0.0, description="of pins; contacts with clearance do not count for accessibility [m]")
     provenance: ProvenanceRecord
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Point, Rows, Vector
-from fixture_design.contacts import Contact, friction_edges, unit_normal
+from fixture_design.contacts import Contact, contact_edges, unit_normal
 from fixture_design.layout import Motion, Singular, Weights
 from fixture_design.tolerances import ROUND_OFF, WITNESS
 
@@ -45,17 +45,18 @@ class Case:
     def rows(self, contact: Contact, normal: Point, friction: float = 0.0, edges: int = 0) -> Rows:
         """The rows of one normal: one, or one for each edge of its friction cone."""
         lever = contact.point - self.reference
-        forces = friction_edges(normal, friction, edges)
+        forces, spins = contact_edges(normal, friction, contact.torsion, edges)
         if len(lever) == 2:
             moments = (lever[0] * forces[:, 1] - lever[1] * forces[:, 0])[:, None]
         else:
             moments = np.cross(lever, forces)
-        return np.hstack([forces, moments / self.length])
+        return np.hstack([forces, (moments + spins) / self.length])
 
     def error(self, contact: Contact, friction: float = 0.0) -> float:
         """How far a row may be off."""
         reach = np.hypot(1.0, np.linalg.norm(contact.point - self.reference) / self.length)
-        return contact.provenance.normal_error * float(reach * np.hypot(1.0, friction))
+        spin = friction * contact.torsion / self.length
+        return contact.provenance.normal_error * float(reach * np.hypot(1.0, friction) + spin)
 
 
 def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool) -> str | None:
@@ -226,13 +227,17 @@ def _scaled(motion: Vector, case: Case) -> Vector:
 
 
 def _work(contact: Contact, normal: Point, motion: Vector, friction: bool) -> float:
-    """n . v + mu |v_t|, and what the normal's error may add to it."""
+    """n . v + mu |[v_t; c w_n]|, and what the normal's error may add to it."""
     v = _velocity(motion, contact.point)
     mu = contact.friction if friction else 0.0
     unit = unit_normal(normal)
     along = float(unit @ v)
     slip = float(np.linalg.norm(v - along * unit))
-    return along + mu * slip + contact.provenance.normal_error * float(np.linalg.norm(v) * np.hypot(1.0, mu))
+    unsure = float(np.linalg.norm(v) * np.hypot(1.0, mu))
+    if contact.torsion:
+        slip = float(np.hypot(slip, contact.torsion * (unit @ motion[3:])))
+        unsure += mu * contact.torsion * float(np.linalg.norm(motion[3:]))
+    return along + mu * slip + contact.provenance.normal_error * unsure
 
 
 def _velocity(motion: Vector, point: Point) -> Point:
