@@ -58,6 +58,14 @@ class Restraint:
         return constraints_of(self.contacts, self.report)
 
     @cached_property
+    def opened(self) -> Restraint | None:
+        """The same with clearances open: pins in their holes keep nothing in; None if no other contacts are left."""
+        kept = tuple(contact for contact in self.contacts if not contact.clearance)
+        if len(kept) == len(self.contacts):
+            return self
+        return Restraint(kept, self.report, self.tolerances) if kept else None
+
+    @cached_property
     def closed(self) -> Settled:
         """Is every branch {o}? Asked once for form closure and accessibility."""
         return UnionQuestions(self.constraints, self.tolerances).closed()

@@ -13,6 +13,7 @@ from fixture_design.geometry.ball import ball_normal, check_room
 from fixture_design.geometry.line import line_touches
 from fixture_design.geometry.local import LocalSurface
 from fixture_design.geometry.pad import pad_touches
+from fixture_design.geometry.pin import pin_touches
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.planar_line import planar_line_touches
 from fixture_design.geometry.polygon import Polygon, polygon_of
@@ -36,7 +37,8 @@ def contacts_of_element(
 
     A point tip takes the logic of the place: one normal on a facet, the OR of a convex edge, the AND of a concave one;
     so does a soft tip, which on a single normal also resists turning about it. A ball takes one normal, and needs room.
-    Pads and lines touch in several points: `pad_touches`, `line_touches`.
+    Pads, lines and pins touch in several points: `pad_touches`, `line_touches`, `pin_touches`; pins at no
+    surface point, but around ``at`` on their axis.
 
     Args:
         friction: the layout's; the element's own comes first.
@@ -48,7 +50,7 @@ def contacts_of_element(
 
     Raises:
         OffSurfaceError: ``at`` is further from the surface than the gap.
-        UnsupportedError: pins; see `local_surface`, `line_touches`.
+        UnsupportedError: pins of planar parts; see `local_surface`, `line_touches`.
         GeometryError: no room for the tip, a size that is not positive, a pad or line that does not lie flat.
         DimensionError: ``at`` or a direction has not three coordinates.
     """
@@ -109,11 +111,17 @@ def _contacts(
     _check_sizes(element)
     dimension = len(X_WP.translation)
     p_PA = X_WP.inverse().points(_checked(element, element.at, "at", dimension)[None])[0]
-    distance, p_PC = surface.nearest(p_PA)
-    if abs(distance) > gap:
-        raise OffSurfaceError(element.name, part_name, distance, surface.feature(p_PC), gap)
+    distance = None
     try:
-        touches = _touches(element, surface, surface.local(p_PC), X_WP, p_PA, p_PC, gap)
+        if isinstance(element.tip, PinTip):
+            touches = _pin(element, element.tip, surface, X_WP, p_PA, gap)
+        else:
+            distance, p_PC = surface.nearest(p_PA)
+            if abs(distance) > gap:
+                raise OffSurfaceError(element.name, part_name, distance, surface.feature(p_PC), gap)
+            touches = _touches(element, surface, surface.local(p_PC), X_WP, p_PA, p_PC, gap)
+    except OffSurfaceError:
+        raise
     except InputError as error:
         error.place = error.place or f"element {element.name!r}"
         raise
@@ -159,6 +167,21 @@ def _touches(
     return (TipTouch(p_PC, local.clauses, local.provenance, local.feature, torsion),)
 
 
+def _pin(element: Element, tip: PinTip, surface: Surface, X_WP: Pose, p_PA: Point, gap: float) -> Sequence[TipTouch]:
+    if not isinstance(surface, SolidSurface):
+        raise UnsupportedError("this version does not evaluate pin tips of planar parts", expected="point tips")
+    if element.axis is None:
+        raise GeometryError("a pin needs an axis", expected="axis: [x, y, z]")
+    if tip.shape == "diamond" and tip.along is None:
+        raise GeometryError("a diamond pin needs a direction", expected="along: [x, y, z]")
+    to_part = X_WP.inverse().vectors
+    axis = to_part(_checked(element, element.axis, "axis", 3)[None])[0]
+    along = None
+    if tip.shape == "diamond" and tip.along is not None:
+        along = to_part(_checked(element, tip.along, "along", 3)[None])[0]
+    return pin_touches(surface.geometry, p_PA, tip, axis, along, gap)
+
+
 def _check_sizes(element: Element) -> None:
     tip = element.tip
     match tip:
@@ -173,7 +196,9 @@ def _check_sizes(element: Element) -> None:
         case LineTip():
             what, sizes = "a line needs a length", (tip.length,)
         case PinTip():
-            raise UnsupportedError(f"element {element.name!r}: this version does not evaluate pin tips")
+            what, sizes = "a pin needs a diameter", (tip.diameter,)
+            if not (np.isfinite(tip.clearance) and tip.clearance >= 0):
+                raise GeometryError(f"element {element.name!r}: a pin needs a clearance >= 0", found=str(tip.clearance))
     if not all(np.isfinite(size) and size > 0 for size in sizes):
         found = ", ".join(str(size) for size in sizes)
         raise GeometryError(f"element {element.name!r}: {what} > 0", found=found, expected="metres")
@@ -188,8 +213,8 @@ def _checked(element: Element, values: Point, key: str, dimension: int) -> Point
         )
     if not np.isfinite(found).all():
         raise GeometryError(f"element {element.name!r}: `{key}` is not finite", found=str(found.tolist()))
-    if key == "along" and not found.any():
-        raise GeometryError(f"element {element.name!r}: `along` has zero length", expected="a direction")
+    if key != "at" and not found.any():
+        raise GeometryError(f"element {element.name!r}: `{key}` has zero length", expected="a direction")
     return found
 
 

@@ -41,6 +41,9 @@ _PROOFS = {
     ("force_closure", Answer.NO): _Proof("motion", friction=True),
 }
 
+#: Claims that contacts with clearance have no part in.
+_WITH_CLEARANCE_OPEN = ("accessible", "strongly_accessible")
+
 
 def check(verdict: Verdict) -> list[str]:
     """Everything that is wrong with a verdict; an empty list confirms it.
@@ -66,7 +69,7 @@ def check_group(group: GroupVerdict, contacts: Sequence[Contact], reference: Poi
     case = Case(contacts, reference, length)
     problems = []
     for claim, finding in group.findings.items():
-        problem = _fault(claim, finding, case)
+        problem = _fault(claim, finding, case.opened if claim in _WITH_CLEARANCE_OPEN else case)
         if problem:
             problems.append(f"{group.name}: {claim} {finding.answer}: {problem}")
     return problems

@@ -8,7 +8,7 @@ is held against every proof.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,8 +30,15 @@ class Case:
     length: float
 
     @property
+    def opened(self) -> Case:
+        """Without the contacts that have clearance; possibly none are left."""
+        return replace(self, contacts=[contact for contact in self.contacts if not contact.clearance])
+
+    @property
     def limit(self) -> float:
         """Numbers up to this are rounding: coordinates far from the origin have fewer digits."""
+        if not self.contacts:
+            return WITNESS
         farthest = max(float(np.linalg.norm(contact.point)) for contact in self.contacts)
         levers = [float(np.linalg.norm(contact.point - self.reference)) for contact in self.contacts]
         reach = min(self.length, max(levers) or self.length)
@@ -65,9 +72,12 @@ def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool) 
     if motion is None:
         return "the motion is not a finite vector of the right length, or zero"
     worst = max(
-        min(_work(contact, normal, motion, friction) for normal in clause)
-        for contact in case.contacts
-        for clause in contact.clauses
+        (
+            min(_work(contact, normal, motion, friction) for normal in clause)
+            for contact in case.contacts
+            for clause in contact.clauses
+        ),
+        default=-1.0,
     )
     return None if worst <= (-case.limit if strict else case.limit) else f"the motion is not admissible: {worst:.1e}"
 
@@ -174,7 +184,7 @@ def _weighted_rows(
     taken = _as_choice(evidence.choice, case)
     if isinstance(taken, str):
         return taken
-    if set(evidence.weights) != {contact.name for contact in case.contacts}:
+    if not case.contacts or set(evidence.weights) != {contact.name for contact in case.contacts}:
         return "the weights name other contacts than the group has"
     rows, values, errors, labels = [], [], [], []
     for contact in case.contacts:
@@ -216,7 +226,7 @@ def _notice_fault(evidence: Singular, case: Case) -> str | None:
 
 def _unit_motion(motion: Vector, case: Case) -> Vector | None:
     """The motion [dx; dtheta] at size one in the case's scale; None if it is no motion."""
-    if motion.shape != (case.contacts[0].dimension,) or not np.isfinite(motion).all():
+    if motion.shape != (3 if len(case.reference) == 2 else 6,) or not np.isfinite(motion).all():
         return None
     size = float(np.linalg.norm(_scaled(motion, case)))
     return motion / size if size > 0 else None
