@@ -13,8 +13,8 @@ from fixture_design.geometry.ball import ball_normal, check_room
 from fixture_design.geometry.line import line_touches
 from fixture_design.geometry.local import LocalSurface
 from fixture_design.geometry.pad import pad_touches
-from fixture_design.geometry.pin import pin_touches
 from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.pin import pin_touches
 from fixture_design.geometry.planar_line import planar_line_touches
 from fixture_design.geometry.polygon import Polygon, polygon_of
 from fixture_design.geometry.surface import SolidSurface, Surface
