@@ -1,8 +1,9 @@
 """Accessibility and detachability (thesis 2.3 (b), 2.6 (b)): can the part get out, and can it leave everything at once?
 
-Accessible: A holds a displacement other than o (2-20), which is the negation of form closure where nothing has clearance. Strongly accessible: the
-interior of A is not empty (2-21), so that the part leaves all contacts together instead of sliding along some, which
-may jam. The interior of a union is non-empty if and only if that of one of its cones is (2-51).
+Accessible: A holds a displacement other than o (2-20), which is the negation of form closure where nothing has
+clearance. Strongly accessible: the interior of A is not empty (2-21), so that the part leaves all contacts together
+instead of sliding along some, which may jam. The interior of a union is non-empty if and only if that of one of its
+cones is (2-51).
 
 Both are asked with clearances open: a pin fills its hole at nominal, and no motion along it would leave it; a real one
 has clearance. Such contacts do not count here, so that a part on pins may be form closed and accessible.

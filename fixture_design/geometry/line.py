@@ -7,12 +7,13 @@ import numpy as np
 from fixture_design.arrays import Point
 from fixture_design.contacts import Provenance, unit_normal
 from fixture_design.errors import GeometryError, UnsupportedError, format_length
-from fixture_design.geometry.footprint import Footprint, check_clear, footprint
+from fixture_design.geometry.footprint import FlatTriangles, check_clear, footprint
 from fixture_design.geometry.local import LocalSurface
 from fixture_design.geometry.nearest import triangles_in_box
 from fixture_design.geometry.pad import flat_normal
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.sets import place_text
+from fixture_design.geometry.smooth_surface import SmoothSurface
 from fixture_design.geometry.tip_touch import TipTouch
 from fixture_design.layout import LineTip
 
@@ -26,6 +27,7 @@ def line_touches(
 
     * On a facet: the two ends of where they overlap, with the facet's normal: v(x) is affine along the line, so the
       ends imply the rest. The line takes the projection of ``along``.
+    * Along a cylinder: the same, with its normal there.
     * Across a convex edge: the crossing point, with the OR of the edge's facets.
     * Along a concave edge: both ends, each with the AND of its facets.
     * Along a convex edge: the true set is no AND of ORs of the ends, since one alternative must serve all along the
@@ -44,7 +46,10 @@ def line_touches(
     """
     normals = [normal for clause in local.clauses for normal in clause]
     if len(normals) == 1:
-        return _on_facet(geometry, flat_normal(local, _WHAT), local, p_PC, tip, along, gap)
+        surface = geometry.surface_of_facet(local.facets[0])
+        if surface is not None and surface.kind == "cylinder":
+            return _on_cylinder(geometry, surface, local, p_PC, tip, along, gap)
+        return _on_facet(geometry, flat_normal(geometry, local, _WHAT), local, p_PC, tip, along, gap)
     if len(normals) > 2:
         raise UnsupportedError(f"this version does not evaluate a line centred on {local.feature}")
     direction = unit_normal(along)
@@ -55,7 +60,9 @@ def line_touches(
     if local.shape == "convex" and any(flush):
         return _on_facet(geometry, normals[flush.index(True)], local, p_PC, tip, along, gap)
     if local.shape == "convex" and slopes[0] * slopes[1] < 0:
-        _check_across(geometry, local, p_PC, direction, tip.length, gap)
+        mean = unit_normal(normals[0]) + unit_normal(normals[1])
+        lift = gap * unit_normal(mean - (mean @ direction) * direction)
+        _check_free(geometry, f"across {local.feature}", p_PC + lift, direction, tip.length, gap)
         return (TipTouch(p_PC, local.clauses, local.provenance, local.feature),)
     depth = max(abs(slope) for slope in slopes) * tip.length / 2
     raise GeometryError(
@@ -75,8 +82,35 @@ def _on_facet(
 ) -> tuple[TipTouch, ...]:
     place = footprint(geometry, p_PC, normal, along, (tip.length / 2, 0.0), gap, _WHAT)
     check_clear(geometry, place, gap, _WHAT)
-    ends = _ends(place, geometry.on_edge)
-    return tuple(TipTouch(end, ((normal,),), local.provenance, local.feature) for end in place.points(ends))
+    ends = _ends(place.flat, tip.length / 2, geometry.on_edge)
+    return tuple(TipTouch(p_PC + end * place.x, ((normal,),), local.provenance, local.feature) for end in ends)
+
+
+def _on_cylinder(
+    geometry: PartGeometry,
+    surface: SmoothSurface,
+    local: LocalSurface,
+    p_PC: Point,
+    tip: LineTip,
+    along: Point,
+    gap: float,
+) -> tuple[TipTouch, ...]:
+    """The ends of where the line runs along the cylinder; it takes the direction of the axis."""
+    turned = float(np.linalg.norm(np.cross(unit_normal(along), surface.axis))) * tip.length / 2
+    if turned > gap:
+        raise GeometryError(
+            f"{_WHAT} on {surface.name} must run along its axis; its ends are {format_length(round(turned, 9))} off",
+            expected=f"along {np.round(surface.axis, 6).tolist()} (part frame)",
+        )
+    normal = local.clauses[0][0]
+    lift = (gap + 2 * surface.sagitta) * unit_normal(normal)
+    _check_free(geometry, f"along {surface.name}", p_PC + lift, surface.axis, tip.length, gap)
+    triangles = np.concatenate([geometry.facets[facet].triangles for facet in surface.facets])
+    corners = geometry.vertices[geometry.triangles[triangles]] - p_PC
+    near = (np.abs(corners @ unit_normal(normal)) < surface.radius).all(axis=1)
+    flat = corners[near] @ np.column_stack([surface.axis, np.cross(normal, surface.axis)])
+    ends = _ends(flat, tip.length / 2, geometry.on_edge)
+    return tuple(TipTouch(p_PC + end * surface.axis, ((normal,),), local.provenance, local.feature) for end in ends)
 
 
 def _along_edge(
@@ -92,9 +126,8 @@ def _along_edge(
     edge = np.cross(normals[0], normals[1])
     edge = edge * np.copysign(1.0, edge @ along)
     places = [footprint(geometry, p_PC, normal, edge, (tip.length / 2, 0.0), gap, _WHAT) for normal in normals]
-    bounds = np.array([_ends(place, geometry.on_edge)[:, 0] for place in places])
-    low, high = float(bounds[:, 0].max()), float(bounds[:, 1].min())
-    ends = places[0].points(np.array([[low, 0.0], [high, 0.0]]))
+    bounds = np.array([_ends(place.flat, tip.length / 2, geometry.on_edge) for place in places])
+    ends = [p_PC + end * places[0].x for end in (bounds[:, 0].max(), bounds[:, 1].min())]
     if local.shape == "concave":
         return tuple(TipTouch(end, local.clauses, local.provenance, local.feature) for end in ends)
     units = [unit_normal(normal) for normal in normals]
@@ -104,18 +137,19 @@ def _along_edge(
     return tuple(TipTouch(end, ((mean,),), provenance, local.feature) for end in ends)
 
 
-def _ends(place: Footprint, precision: float) -> np.ndarray:
-    """The two ends of where the line lies on the facet, shape (2, 2), in the coordinates of the plane.
+def _ends(flat: FlatTriangles, half: float, precision: float) -> tuple[float, float]:
+    """From where to where the line y = 0, |x| <= half, lies on triangles given by [x, y].
 
     Raises:
         GeometryError: they overlap in a point at most.
     """
-    found = [interval for triangle in place.flat if (interval := _crossed(triangle, precision)) is not None]
-    half = place.half[0]
+    near = (flat[:, :, 1].min(axis=1) <= precision) & (flat[:, :, 1].max(axis=1) >= -precision)
+    found = [interval for triangle in flat[near] if (interval := _crossed(triangle, precision)) is not None]
     clipped = [(max(low, -half), min(high, half)) for low, high in found if high > -half and low < half]
-    if not clipped or max(high for _, high in clipped) - min(low for low, _ in clipped) <= precision:
-        raise GeometryError(f"{_WHAT} does not lie on the facet at all", expected="a longer line")
-    return np.array([[min(low for low, _ in clipped), 0.0], [max(high for _, high in clipped), 0.0]])
+    low, high = min((low for low, _ in clipped), default=0.0), max((high for _, high in clipped), default=0.0)
+    if high - low <= precision:
+        raise GeometryError(f"{_WHAT} does not lie on the surface at all", expected="a longer line")
+    return low, high
 
 
 def _crossed(triangle: np.ndarray, precision: float) -> tuple[float, float] | None:
@@ -129,24 +163,19 @@ def _crossed(triangle: np.ndarray, precision: float) -> tuple[float, float] | No
     return (min(places), max(places)) if len(places) > 1 else None
 
 
-def _check_across(
-    geometry: PartGeometry, local: LocalSurface, p_PC: Point, direction: Point, length: float, gap: float
-) -> None:
-    """A line across an edge must stay out of the rest of the part: it may not cross the surface.
+def _check_free(geometry: PartGeometry, where: str, lifted: Point, direction: Point, length: float, gap: float) -> None:
+    """A line, lifted a little off the surface it touches, may not cross the surface further than the gap from its ends.
 
     Raises:
         GeometryError: it does.
     """
-    mean = sum((unit_normal(normal) for normal in local.clauses[0]), np.zeros(3))
-    # lifted off, with the line in the plane y = 0 and the lift in z = 0, so that what crosses it crosses the axis
-    lifted = p_PC + gap * unit_normal(mean - (mean @ direction) * direction)
-    place = _crossings(geometry, lifted, direction, length / 2)
-    inner = place[np.abs(place) < length / 2 - gap]
+    places = _crossings(geometry, lifted, direction, length / 2)
+    inner = places[np.abs(places) < length / 2 - gap]
     if len(inner):
         worst = float(inner[np.argmin(np.abs(inner))])
         depth = length / 2 - abs(worst)
         raise GeometryError(
-            f"{_WHAT} across {local.feature} cuts {format_length(round(depth, 9))} into {geometry.name!r} at "
+            f"{_WHAT} {where} cuts {format_length(round(depth, 9))} into {geometry.name!r} at "
             f"{place_text(lifted + worst * direction)} (part frame)",
             expected="a place with room for it, or a shorter line",
         )

@@ -30,14 +30,14 @@ def pad_touches(
     Raises:
         GeometryError: a curved surface; a centre on an edge; ``along`` is the normal; no room beside the facet.
     """
-    normal = flat_normal(local, "a pad")
+    normal = flat_normal(geometry, local, "a pad")
     place = footprint(geometry, p_PC, normal, along, (tip.width / 2, tip.height / 2), gap, "a pad")
     check_clear(geometry, place, gap, "a pad")
     corners = place.points(_overlap_hull(place, geometry.on_edge))
     return tuple(TipTouch(corner, ((normal,),), local.provenance, local.feature) for corner in corners)
 
 
-def flat_normal(local: LocalSurface, what: str) -> Point:
+def flat_normal(geometry: PartGeometry, local: LocalSurface, what: str) -> Point:
     """The normal of the facet at a tip's centre.
 
     Raises:
@@ -45,7 +45,7 @@ def flat_normal(local: LocalSurface, what: str) -> Point:
     """
     if local.shape != "flat":
         raise GeometryError(f"{what} centred on {local.feature} has no plane", expected="its centre inside a facet")
-    if local.provenance.kind != "exact":
+    if local.provenance.kind != "exact" or geometry.surface_of_facet(local.facets[0]) is not None:
         raise GeometryError(
             f"{what} cannot lie flat on {local.feature}, which is part of a curved surface",
             expected="a flat facet (or `faceted: true` for a part that has no curved surfaces), or another tip",

@@ -4,6 +4,7 @@ A contact on the wall of a round hole, at x = p + R e with p on the axis, has th
 the radius drops out. All rows around the hole thus lie in one plane and fill it, and so do the four of two crossed
 diameters: four contacts stand for all of them exactly. An arc of wall fills the sector between its ends, which contacts
 at its ends and no more than a right angle apart span. With friction the places matter, and these few are taken.
+"""
 
 from __future__ import annotations
 

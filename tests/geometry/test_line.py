@@ -154,11 +154,26 @@ def test_line_on_a_facet_admits_what_the_solid_admits(ell: PartGeometry) -> None
     assert min(seen.values()) > 20
 
 
-def test_on_a_shaft_across_its_strips_is_an_error(tmp_path: Path) -> None:
-    shaft = loaded(tmp_path, prism(circle(0.01, 24), 0.03))
-    middle = 0.01 * np.cos(np.pi / 24) * np.array([np.cos(np.pi / 24), np.sin(np.pi / 24), 1.0])
-    with pytest.raises(GeometryError, match=r"E1.*curved"):
-        line(shaft, middle, 0.01, [0, 1, 0.3])
+def test_along_a_shaft_both_ends_have_its_normal(tmp_path: Path) -> None:
+    shaft = loaded(tmp_path, prism(circle(0.01, 48), 0.03))
+    for angle in (0.03, np.pi / 48, 2.2):
+        radial = np.array([np.cos(angle), np.sin(angle), 0.0])
+        contacts = line(shaft, 0.01 * radial + [0, 0, 0.02], 0.05, [0, 0, -1])
+        np.testing.assert_allclose([c.point for c in contacts], 0.01 * radial + [[0, 0, 0], [0, 0, 0.03]], atol=1e-8)
+        for contact in contacts:
+            np.testing.assert_allclose(contact.normals[0], radial, atol=1e-6)
+            assert contact.provenance.kind == "fitted"
+    inside = line(shaft, 0.01 * radial + [0, 0, 0.02], 0.006, [0, 0, 1])
+    np.testing.assert_allclose([c.point[2] for c in inside], [0.017, 0.023], atol=1e-12)
+    with pytest.raises(GeometryError, match=r"E1.*along its axis.*off"):
+        line(shaft, 0.01 * radial + [0, 0, 0.02], 0.01, [0, 1, 0.3])
+
+
+def test_along_a_bore_the_normals_point_to_the_axis(tmp_path: Path) -> None:
+        bore = loaded(tmp_path, prism([[-0.03, -0.03], [0.03, -0.03], [0.03, 0.03], [-0.03, 0.03]], 0.02, [circle(0.01, 48)]))
+    contacts = line(bore, [0.01, 0, 0.005], 0.016, [0, 0, 1])
+    np.testing.assert_allclose([c.point for c in contacts], [[0.01, 0, 0], [0.01, 0, 0.013]], atol=1e-8)
+    np.testing.assert_allclose([c.normals[0] for c in contacts], [[-1, 0, 0]] * 2, atol=1e-6)
 
 
 SQUARE = [[0, 0], [2, 0], [2, 2], [0, 2]]
