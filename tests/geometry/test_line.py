@@ -170,7 +170,8 @@ def test_along_a_shaft_both_ends_have_its_normal(tmp_path: Path) -> None:
 
 
 def test_along_a_bore_the_normals_point_to_the_axis(tmp_path: Path) -> None:
-        bore = loaded(tmp_path, prism([[-0.03, -0.03], [0.03, -0.03], [0.03, 0.03], [-0.03, 0.03]], 0.02, [circle(0.01, 48)]))
+    outline = [[-0.03, -0.03], [0.03, -0.03], [0.03, 0.03], [-0.03, 0.03]]
+    bore = loaded(tmp_path, prism(outline, 0.02, [circle(0.01, 48)]))
     contacts = line(bore, [0.01, 0, 0.005], 0.016, [0, 0, 1])
     np.testing.assert_allclose([c.point for c in contacts], [[0.01, 0, 0], [0.01, 0, 0.013]], atol=1e-8)
     np.testing.assert_allclose([c.normals[0] for c in contacts], [[-1, 0, 0]] * 2, atol=1e-6)
