@@ -162,8 +162,8 @@ def _touches(
             return pad_touches(surface.geometry, local, p_PC, tip, along, gap)
         return line_touches(surface.geometry, local, p_PC, tip, along, gap)
     # where several normals meet, which of them turning would be about is open: none, to be safe
-    soft = isinstance(tip, SoftTip) and local.shape == "flat" and len(p_PC) == 3
-    torsion = torsion_of_patch(tip.radius) if soft else 0.0
+    flat = local.shape == "flat" and len(p_PC) == 3
+    torsion = torsion_of_patch(tip.radius) if isinstance(tip, SoftTip) and flat else 0.0
     return (TipTouch(p_PC, local.clauses, local.provenance, local.feature, torsion),)
 
 
