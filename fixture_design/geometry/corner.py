@@ -20,12 +20,13 @@ from itertools import combinations
 import numpy as np
 
 from fixture_design.geometry.shapes import DirectionMask, Directions, Normals, Vector3
+from fixture_design.tolerances import COPLANAR_ANGLE
 
 #: Facets that may meet in a corner: 2^k subsets are looked at.
 MOST_FACETS = 10
 
-#: Sine of an angle below which a direction lies in a plane [-].
-_IN_PLANE = 1e-7
+#: Sine of an angle below which a direction lies in a plane, and two planes are one (facing the same way or not) [-].
+_IN_PLANE = COPLANAR_ANGLE
 
 
 def clauses_of_corner(normals: Normals, inside: Callable[[Directions], DirectionMask]) -> tuple[tuple[int, ...], ...]:
@@ -90,6 +91,8 @@ def _around(line: Vector3, normals: Normals) -> Directions:
     traces = np.cross(normals[containing], line)
     angles = np.arctan2(traces @ other, traces @ side)
     angles = np.unique(np.mod([angles, angles + np.pi], 2 * np.pi))
-    middles = angles + np.diff([*angles, angles[0] + 2 * np.pi]) / 2
+    widths = np.diff([*angles, angles[0] + 2 * np.pi])
+    # between facets of one plane that face opposite ways lies no sector, but their rounding
+    middles = (angles + widths / 2)[widths > 2 * _IN_PLANE]
     reach = 0.5 * np.abs(heights[~containing]).min(initial=1.0)
     return line + reach * (np.outer(np.cos(middles), side) + np.outer(np.sin(middles), other))
