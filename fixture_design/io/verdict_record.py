@@ -98,7 +98,7 @@ def _cone(cone: PolyhedralConvexCone) -> Data:
 
 def _contact(contact: Contact) -> Data:
     provenance = contact.provenance
-    return {
+    data: Data = {
         "name": contact.name,
         "role": contact.role,
         "point": plain_numbers(contact.point),
@@ -106,10 +106,11 @@ def _contact(contact: Contact) -> Data:
         "distance": plain_numbers(contact.distance),
         "feature": contact.feature,
         "friction": plain_numbers(contact.friction),
-        "torsion": plain_numbers(contact.torsion),
-        "clearance": plain_numbers(contact.clearance),
         "provenance": {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)},
     }
+    # keys of soft tips and pins alone
+    lengths = {"torsion": contact.torsion, "clearance": contact.clearance}
+    return data | {key: plain_numbers(length) for key, length in lengths.items() if length}
 
 
 def _run(verdict: Verdict) -> Data:
