@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from fixture_design.arrays import ArrayLike
 from fixture_design.cones.cone import PolyhedralConvexCone, require_same_dimension
-from fixture_design.cones.convert import convert
-from fixture_design.cones.membership import element, interior, nonzero, subset
+from fixture_design.cones.convert import convert_both
+from fixture_design.cones.membership import element, interior, nonzero
 from fixture_design.cones.polar import convex_sum, dual
 from fixture_design.errors import ConeError
 from fixture_design.tolerances import DEFAULT, Tolerances
@@ -60,13 +60,23 @@ def union_element(vector: ArrayLike, union: ConeUnion, tolerances: Tolerances = 
     return any(element(vector, cone, tolerances) for cone in union)
 
 
-def union_dual(union: ConeUnion, tolerances: Tolerances = DEFAULT) -> PolyhedralConvexCone:
+def union_dual(
+    union: ConeUnion, tolerances: Tolerances = DEFAULT, max_spans: int | None = None
+) -> PolyhedralConvexCone:
     """F = (A_1 u ... u A_N)* = (A_1 + ... + A_N)*  (2-37, 2-58; Table 3): a single cone.
 
-    A cone that the sum already contains is not added again.
+    The span vectors of all A_n together span the sum (2-34); one conversion makes both forms of it, and thus of F,
+    irreducible. A single A is its own sum.
+
+    Args:
+        max_spans: span vectors of all the cones together that are still converted.
+
+    Raises:
+        ConeError: a union with more span vectors.
     """
-    total = convert(union.cones[0], tolerances)
-    for cone in union.cones[1:]:
-        if not subset(cone, total, tolerances):
-            total = convert(convex_sum(total, cone, tolerances=tolerances), tolerances)
-    return dual(total)
+    if len(union) == 1:
+        return dual(convert_both(union.cones[0], tolerances))
+    total = convex_sum(*union, tolerances=tolerances)
+    if max_spans is not None and len(total.spans) > max_spans:
+        raise ConeError(f"the union has {len(total.spans)} span vectors, more than {max_spans}")
+    return dual(convert_both(total, tolerances))

@@ -2,8 +2,8 @@
 
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
 from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, unit_normal
-from fixture_design.contacts.friction import Side, friction_edges
-from fixture_design.contacts.wrench import face_vectors, motion_about_origin, motion_scaled, velocity
+from fixture_design.contacts.friction import Side, first_tangents, friction_edges
+from fixture_design.contacts.wrench import cross, face_vectors, motion_about_origin, motion_scaled, velocity
 
 __all__ = [
     "ROLES",
@@ -15,7 +15,9 @@ __all__ = [
     "Scale",
     "Side",
     "constraints_of",
+    "cross",
     "face_vectors",
+    "first_tangents",
     "friction_edges",
     "motion_about_origin",
     "motion_scaled",
