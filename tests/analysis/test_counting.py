@@ -106,7 +106,6 @@ def test_contacts_in_one_line_let_it_spin_whatever_their_friction() -> None:
         lambda rule: replace(rule, counted=tuple(replace(b, count=b.count + 5) for b in rule.counted)),
         lambda rule: replace(rule, counted=(*rule.counted, *rule.counted)),
         lambda rule: replace(rule, name="few normals"),
-        lambda rule: replace(rule, name="few words"),
         lambda rule: None,
     ],
 )
