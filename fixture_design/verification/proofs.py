@@ -123,13 +123,16 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyra
     residual = float(np.linalg.norm(weights @ rows))
     if not closes:
         total = residual + float(weights @ errors)
-        return None if total <= case.limit else f"the weights do not balance: {total:.1e}"
+        if total <= case.limit:
+            return None
     sizes = np.linalg.svd(weights[:, None] * rows, compute_uv=False)
     rank = rows.shape[1]
     smallest = sizes[rank - 1] if len(sizes) >= rank else 0.0
     margin = (smallest - residual) / (1 + float(np.linalg.norm(weights))) - float(errors.max())
     if margin <= 100 * ROUND_OFF * sizes[0]:
         return f"the weights do not balance and span: {margin:.1e}"
+    if not closes:
+        return None  # closed, and so without interior, however far the normals are off
     basis = [labels.index(place) for place in evidence.basis if place in labels]
     if len(set(basis)) != rank or len(evidence.basis) != rank or not np.all(weights[basis] > 0):
         return "the basis is not one row of positive weight for every dimension"
