@@ -81,8 +81,8 @@ class FindingRecord(Record):
     edges: int | None = Field(None, description="friction edges in space")
     tangents: dict[str, list[Row]] | None = Field(
         None,
-        description="with edges: for each contact with friction the unit tangent t of each of its normals; the force of "
-        "edge k is n + friction (cos a t + sin a n X t), a = 2 pi k / edges, n of length one",
+        description="with edges: for each contact with friction the unit tangent t of each of its normals; the force "
+        "of edge k is n + friction (cos a t + sin a n X t), a = 2 pi k / edges, n of length one",
     )
     reason: str | None = Field(None, description="why it is undecided")
 

@@ -26,7 +26,7 @@ from fixture_design.contacts import (
     velocity,
 )
 from fixture_design.layout import Motion, Singular, Weights
-from fixture_design.tolerances import ROUND_OFF, WITNESS
+from fixture_design.tolerances import DEFAULT, ROUND_OFF, WITNESS
 
 #: A clause of a contact: (contact name, its place among the contact's clauses).
 Place = tuple[str, int]
@@ -47,6 +47,11 @@ class Case:
         """Numbers up to this are rounding: coordinates far from the origin have fewer digits."""
         farthest = max(float(np.linalg.norm(contact.point)) for contact in self.contacts)
         return max(WITNESS, 100 * ROUND_OFF * (1 + farthest / self.scale.length))
+
+    @property
+    def near(self) -> float:
+        """Numbers beyond this are certainly not zero."""
+        return DEFAULT.at_offset(self.scale.offset).near
 
     @cached_property
     def alternatives(self) -> dict[Place, int]:
@@ -86,12 +91,16 @@ class Pyramids:
         given = self.tangents.get(contact.name, ())
         if len(given) != len(contact.normals) or self.edges < 1:
             return f"{contact.name} has {len(given)} tangents and {self.edges} edges for {len(contact.normals)} normals"
-        for normal, tangent in zip(contact.normals, given, strict=True):
-            off = [abs(float(np.linalg.norm(tangent)) - 1), abs(float(unit_normal(normal) @ tangent))]
-            if np.shape(tangent) != (3,) or not max(off) <= WITNESS:
-                return f"{contact.name} has a tangent that is not a unit vector across its normal"
-        pairs = zip(contact.normals, given, strict=True)
-        return [friction_edges(n, contact.friction, self.edges, first=tangent) for n, tangent in pairs]
+        pairs = list(zip(contact.normals, given, strict=True))
+        if not all(np.shape(t) == np.shape(n) and _is_tangent(t, n) for n, t in pairs):
+            return f"{contact.name} has a tangent that is not a unit vector across its normal"
+        return [friction_edges(normal, contact.friction, self.edges, first=tangent) for normal, tangent in pairs]
+
+
+def _is_tangent(tangent: Point, normal: Point) -> bool:
+    """Whether it is a unit vector across the normal; one with NaN is not."""
+    off = [abs(float(np.linalg.norm(tangent)) - 1), abs(float(unit_normal(normal) @ tangent))]
+    return bool(np.max(off) <= WITNESS)
 
 
 def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool, nominal: bool = False) -> str | None:
@@ -114,17 +123,19 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyra
     """Weights of one branch that balance; ``closes``: that also span, so that the branch is {o}.
 
     Balance proves s >= -(r + w . e), r = |D^T w| for weights of sum 1 and row errors e. Closure is proved by
-    s >= (sigma_min(diag(w) D) - r) / (1 + |w|) - max e, which must be positive (see `analysis.bounds`).
+    s >= (sigma_min(diag(w) D) - r) / (1 + |w|) - max e, which must be positive (see `analysis.bounds`), and then there
+    is no interior either. That bound alone would have room for an r that is clearly not zero: such weights do not
+    balance, as they claim to, and belong to other normals or edges.
     """
     found = _weighted_rows(evidence, case, pyramids)
     if isinstance(found, str):
         return found
     rows, weights, errors, labels = found
     residual = float(np.linalg.norm(weights @ rows))
-    if not closes:
-        total = residual + float(weights @ errors)
-        if total <= case.limit:
-            return None
+    if not residual <= case.near:
+        return f"the weights do not balance: {residual:.1e}"
+    if not closes and residual + float(weights @ errors) <= case.limit:
+        return None
     sizes = np.linalg.svd(weights[:, None] * rows, compute_uv=False)
     rank = rows.shape[1]
     smallest = sizes[rank - 1] if len(sizes) >= rank else 0.0

@@ -81,12 +81,15 @@ def test_few_rows_on_rough_surfaces_do_not_close() -> None:
 
 
 def test_three_facets_do_not_close() -> None:
-    contacts = [*box_sides(3), *(on_facet(f"T{i}", X + [0, 0.3, i - 0.5], X, "facet 0", 0.6) for i in (0, 1))]
+    contacts = [*box_sides(3), *(on_facet(f"T{i}", X + np.array([0, 0.3, i - 0.5]), X, "facet 0", 0.6) for i in (0, 1))]
     contacts = [replace(c, provenance=Provenance("exact", 0.6)) for c in contacts]
     verdict = verdict_of(*contacts)
     evidence = finding(verdict, "form_closure").evidence
     assert finding(verdict, "form_closure").answer is Answer.NO
     assert isinstance(evidence, Motion)
+    assert evidence.rule is not None
+    assert evidence.rule.name == "few normals"
+    assert [block.count for block in evidence.rule.counted] == [1, 1, 1]
     assert check(verdict) == []
 
 
@@ -106,6 +109,7 @@ def test_contacts_in_one_line_let_it_spin_whatever_their_friction() -> None:
         lambda rule: replace(rule, counted=tuple(replace(b, count=b.count + 5) for b in rule.counted)),
         lambda rule: replace(rule, counted=(*rule.counted, *rule.counted)),
         lambda rule: replace(rule, name="few normals"),
+        lambda rule: misnamed(rule),
         lambda rule: None,
     ],
 )
@@ -114,9 +118,33 @@ def test_forged_counts(forge: Callable[[Rule], Rule | None]) -> None:
     found = finding(verdict, "deterministic")
     assert isinstance(found.evidence, Singular)
     assert found.evidence.rule is not None
-    forged = replace(found, evidence=replace(found.evidence, rule=forge(found.evidence.rule)))
+    assert check(with_rule(verdict, forge(found.evidence.rule))) != []
+
+
+def test_a_rule_of_unknown_name_is_reported() -> None:
+    verdict = verdict_of(*pads(4))
+    evidence = finding(verdict, "deterministic").evidence
+    assert isinstance(evidence, Singular)
+    assert evidence.rule is not None
+    assert check(with_rule(verdict, misnamed(evidence.rule))) == [
+        "all: deterministic no: no rule is called 'few words'"
+    ]
+
+
+def with_rule(verdict: Verdict, rule: Rule | None) -> Verdict:
+    """The verdict with another rule behind its `deterministic`."""
+    found = finding(verdict, "deterministic")
+    assert isinstance(found.evidence, Singular)
+    forged = replace(found, evidence=replace(found.evidence, rule=rule))
     group = replace(verdict.groups["all"], findings={**verdict.groups["all"].findings, "deterministic": forged})
-    assert check(replace(verdict, groups={"all": group})) != []
+    return replace(verdict, groups={"all": group})
+
+
+def misnamed(rule: Rule) -> Rule:
+    """A rule with a name that there is none of, past the type check of its constructor."""
+    wrong = replace(rule)
+    object.__setattr__(wrong, "name", "few words")
+    return wrong
 
 
 @pytest.mark.parametrize(
