@@ -101,6 +101,22 @@ def test_contacts_in_one_line_let_it_spin_whatever_their_friction() -> None:
     assert check(verdict) == []
 
 
+def with_rule(verdict: Verdict, rule: Rule | None) -> Verdict:
+    """The verdict with another rule behind its `deterministic`."""
+    found = finding(verdict, "deterministic")
+    assert isinstance(found.evidence, Singular)
+    forged = replace(found, evidence=replace(found.evidence, rule=rule))
+    group = replace(verdict.groups["all"], findings={**verdict.groups["all"].findings, "deterministic": forged})
+    return replace(verdict, groups={"all": group})
+
+
+def misnamed(rule: Rule) -> Rule:
+    """A rule with a name that there is none of, past the type check of its constructor."""
+    wrong = replace(rule)
+    object.__setattr__(wrong, "name", "few words")
+    return wrong
+
+
 @pytest.mark.parametrize(
     "forge",
     [
@@ -109,7 +125,7 @@ def test_contacts_in_one_line_let_it_spin_whatever_their_friction() -> None:
         lambda rule: replace(rule, counted=tuple(replace(b, count=b.count + 5) for b in rule.counted)),
         lambda rule: replace(rule, counted=(*rule.counted, *rule.counted)),
         lambda rule: replace(rule, name="few normals"),
-        lambda rule: misnamed(rule),
+        misnamed,
         lambda rule: None,
     ],
 )
@@ -129,22 +145,6 @@ def test_a_rule_of_unknown_name_is_reported() -> None:
     assert check(with_rule(verdict, misnamed(evidence.rule))) == [
         "all: deterministic no: no rule is called 'few words'"
     ]
-
-
-def with_rule(verdict: Verdict, rule: Rule | None) -> Verdict:
-    """The verdict with another rule behind its `deterministic`."""
-    found = finding(verdict, "deterministic")
-    assert isinstance(found.evidence, Singular)
-    forged = replace(found, evidence=replace(found.evidence, rule=rule))
-    group = replace(verdict.groups["all"], findings={**verdict.groups["all"].findings, "deterministic": forged})
-    return replace(verdict, groups={"all": group})
-
-
-def misnamed(rule: Rule) -> Rule:
-    """A rule with a name that there is none of, past the type check of its constructor."""
-    wrong = replace(rule)
-    object.__setattr__(wrong, "name", "few words")
-    return wrong
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ def pose_at(distance: float, plane: int, rng: np.random.Generator) -> Pose:
 
 
 @pytest.mark.parametrize("away", [13.0, 127.0, 1e4])
-@pytest.mark.parametrize("layout", generate(30, 11), ids=str)
+@pytest.mark.parametrize("layout", list(generate(30, 11)), ids=str)
 def test_verdicts_of_moved_layouts_are_confirmed(layout, away: float) -> None:
     rng = np.random.default_rng(layout.number)
     spread = float(np.ptp([c.point for c in layout.contacts], axis=0).max()) or 1.0
