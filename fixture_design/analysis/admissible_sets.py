@@ -17,10 +17,8 @@ from fixture_design.cones import (
     ConeUnion,
     PolyhedralConvexCone,
     bidirectional,
-    convert,
-    convert_both,
     convert_rows,
-    dual,
+    union_dual,
 )
 from fixture_design.contacts import Scale, motion_about_origin
 from fixture_design.errors import ConeError
@@ -69,14 +67,7 @@ def admissible_forces(displacements: ConeUnion, tolerances: Tolerances = DEFAULT
     Raises:
         ConeError: a union with more than MAX_SUM span vectors.
     """
-    if len(displacements) == 1:
-        return dual(convert_both(displacements.cones[0], tolerances))
-    known = [convert(cone, tolerances) for cone in displacements]
-    spans, lines = np.vstack([cone.spans for cone in known]), np.vstack([cone.lines for cone in known])
-    if len(spans) > MAX_SUM:
-        raise ConeError(f"the union has {len(spans)} span vectors, more than {MAX_SUM}")
-    total = PolyhedralConvexCone.from_span(spans, lines, dimension=displacements.dimension)
-    return dual(convert_both(replace(total, certain=all(cone.certain for cone in known)), tolerances))
+    return union_dual(displacements, tolerances, MAX_SUM)
 
 
 def bidirectional_contacts(restraint: Restraint) -> tuple[str, ...]:

@@ -108,16 +108,17 @@ def _hull_bounds(rows: Rows, errors: Weights, weights: Weights) -> Bounds:
     """Bounds by the hull's facets; weights that are too uneven to prove closure are replaced by better ones.
 
     The facets say how far it is from opening, but a reader has only the weights: without weights that prove s > 0 by
-    themselves the lower bound is not used.
+    themselves, errors and all, the lower bound is not used.
     """
     found = nearest_facet(rows)
     if found is None:
         return Bounds(-np.inf, np.inf, None, None)
     upper = float(np.max(rows @ found.motion + errors))
-    if closure_bound(rows, weights) <= PROVED * found.at_least:
+    off = float(errors.max())
+    if closure_bound(rows, weights) <= PROVED * found.at_least + off:
         weights = _stiffer_weights(rows, weights)
-    proved = closure_bound(rows, weights) > PROVED * found.at_least
-    lower = found.at_least - float(errors.max()) if proved else -np.inf
+    proved = closure_bound(rows, weights) > PROVED * found.at_least + off
+    lower = found.at_least - off if proved else -np.inf
     return Bounds(lower, upper, found.motion, weights)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from fixture_design.analysis.bounds import Bounds, bounds_of
 from fixture_design.arrays import Indices, Rows, Vector, Weights
 from fixture_design.contacts import Constraints
+from fixture_design.layout import Rule
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: Nodes looked at before a union is given up as undecided.
@@ -44,12 +45,14 @@ class Settled:
         motion: unit, in the rows' coordinates, if one motion settles it.
         leaves: if weights settle it: together they cover every branch.
         reason: why it is undecided.
+        rule: why the motion of the normals as given settles it for all normals within their errors, if it does so.
     """
 
     truth: bool | None
     motion: Vector | None = None
     leaves: tuple[Leaf, ...] = ()
     reason: str | None = None
+    rule: Rule | None = None
 
 
 class UnionQuestions:

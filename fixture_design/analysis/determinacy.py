@@ -8,12 +8,14 @@ search is at most d deep.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import islice, product
 
 import numpy as np
 
+from fixture_design.analysis.counting import too_few_to_locate
+from fixture_design.analysis.normal_errors import still_motion
 from fixture_design.analysis.restraint import Restraint, motion_in_world
 from fixture_design.arrays import Rows, Vector, Weights
 from fixture_design.cones.kernel import singular_directions
@@ -35,15 +37,15 @@ def deterministic(restraint: Restraint) -> Finding:
         reason. The margin is the d-th singular value in the report's scale, smallest over the branches, 0 with fewer
         rows than d; None if there are more than MAX_BRANCHES branches.
     """
-    constraints = restraint.constraints
-    lengths = np.linalg.norm(constraints.rows, axis=1)
-    search = _RankSearch(
-        constraints,
-        constraints.rows / lengths[:, None],
-        constraints.errors / lengths,
-        restraint.tolerances.at_offset(constraints.scale.offset),
-    )
+    constraints, rule = restraint.constraints, None
+    search = _RankSearch.of(constraints, restraint.tolerances)
     outcome = search.visit()
+    if isinstance(outcome, _Deficient) and outcome.motion is None and constraints.errors.any():
+        still, rule = still_motion(restraint.contacts, restraint.tolerances), too_few_to_locate(restraint.contacts)
+        if still is not None:
+            outcome, rule = replace(outcome, motion=still), None
+        elif rule is not None:
+            outcome = _RankSearch.of(constraints.without_errors(), restraint.tolerances).visit()
     margin = determinacy_margin(restraint.reported)
     dimension = constraints.rows.shape[1]
     if isinstance(outcome, _FullRank):
@@ -53,13 +55,13 @@ def deterministic(restraint: Restraint) -> Finding:
         reason = f"the smallest singular value is {outcome.value:.1e}, neither zero nor clear of it"
         if search.nodes >= MAX_NODES:
             reason = f"the union has {constraints.branch_count} cones; gave up after {MAX_NODES} choices"
-        return Finding(Answer.UNDECIDED, margin, reason=reason)
+        return Finding(Answer.UNDECIDED, margin, reason=restraint.reason(reason))
     motion = motion_in_world(outcome.motion, constraints.scale)
     scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)
     rows = restraint.reported.rows[restraint.reported.rows_of(outcome.choice)]
     residual = float(np.abs(rows @ scaled).max() / np.linalg.norm(scaled))
     choice = restraint.choice(outcome.choice, constraints)
-    return Finding(Answer.NO, margin, Singular(outcome.rank, motion, (choice,), residual), residual)
+    return Finding(Answer.NO, margin, Singular(outcome.rank, motion, (choice,), residual, rule), residual)
 
 
 def determinacy_margin(constraints: Constraints) -> float | None:
@@ -103,6 +105,12 @@ class _RankSearch:
     errors: Weights
     tolerances: Tolerances
     nodes: int = 0
+
+    @classmethod
+    def of(cls, constraints: Constraints, tolerances: Tolerances) -> _RankSearch:
+        lengths = np.linalg.norm(constraints.rows, axis=1)
+        rows, errors = constraints.rows / lengths[:, None], constraints.errors / lengths
+        return cls(constraints, rows, errors, tolerances.at_offset(constraints.scale.offset))
 
     @cached_property
     def alternatives(self) -> list[list[int]]:

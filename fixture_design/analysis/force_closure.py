@@ -18,8 +18,9 @@ import numpy as np
 
 from fixture_design.analysis.branches import Settled, UnionQuestions
 from fixture_design.analysis.margin import closure_margin
+from fixture_design.analysis.normal_errors import still_motion
 from fixture_design.analysis.restraint import Restraint, largest_residual, motion_in_world
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Point, Vector
 from fixture_design.contacts import Constraints, Side, constraints_of, motion_scaled
 from fixture_design.layout import Answer, Finding, Motion
 
@@ -40,8 +41,14 @@ def force_closure(restraint: Restraint) -> Finding:
     if not any(contact.friction > 0 for contact in restraint.contacts):
         settled = restraint.closed
         return restraint.finding(Answer.of(settled.truth), settled, restraint.margin, full_rank=True)
-    planar = restraint.contacts[0].dimension == 3
-    return _in_the_plane(restraint) if planar else _in_space(restraint)
+    finding = _in_the_plane(restraint) if restraint.contacts[0].dimension == 3 else _in_space(restraint)
+    if finding.answer is not Answer.UNDECIDED or not restraint.constraints.errors.any():
+        return finding
+    still = still_motion(restraint.contacts, restraint.tolerances)
+    against = None if still is None else _unopposed(restraint, Settled(False, motion=still), restraint.constraints)
+    if against is None:
+        return replace(finding, reason=restraint.reason(finding.reason))
+    return replace(finding, answer=Answer.NO, evidence=against, residual=against.residual, reason=None)
 
 
 def _in_the_plane(restraint: Restraint) -> Finding:
@@ -66,11 +73,11 @@ def _in_space(restraint: Restraint) -> Finding:
             return _holds(restraint, settled, inner, edges)
         against = _unopposed(restraint, settled, inner)
         if against is not None:
-            return Finding(Answer.NO, _margin(restraint, edges, "inner"), against, against.residual, edges)
+            return _opened(restraint, against, edges, "inner")
         outer = _pyramids(restraint, edges, "outer")
         against = _unopposed(restraint, UnionQuestions(outer, restraint.tolerances).closed(), outer)
         if against is not None:
-            return Finding(Answer.NO, _margin(restraint, edges, "outer"), against, against.residual, edges)
+            return _opened(restraint, against, edges, "outer")
     reason = f"pyramids of {steps[-1]} edges inside and outside the friction cones do not agree: a tie with the cones"
     return Finding(Answer.UNDECIDED, edges=steps[-1], reason=reason)
 
@@ -78,7 +85,20 @@ def _in_space(restraint: Restraint) -> Finding:
 def _holds(restraint: Restraint, settled: Settled, inner: Constraints, edges: int) -> Finding:
     evidence = restraint.evidence(settled, inner, _pyramids(restraint, edges, "inner", reported=True), full_rank=True)
     margin = _margin(restraint, edges, "inner")
-    return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges)
+    return Finding(Answer.YES, margin, evidence, largest_residual(evidence), edges, _tangents(restraint))
+
+
+def _opened(restraint: Restraint, against: Motion, edges: int, side: Side) -> Finding:
+    margin = _margin(restraint, edges, side)
+    return Finding(Answer.NO, margin, against, against.residual, edges, _tangents(restraint))
+
+
+def _tangents(restraint: Restraint) -> dict[str, tuple[Point, ...]] | None:
+    """By name, for the contacts that have friction; None in the plane."""
+    if restraint.tangents is None:
+        return None
+    known = zip(restraint.contacts, restraint.tangents, strict=True)
+    return {contact.name: tuple(tangents) for contact, tangents in known if contact.friction > 0}
 
 
 def _margin(restraint: Restraint, edges: int, side: Side) -> float | None:
@@ -88,7 +108,9 @@ def _margin(restraint: Restraint, edges: int, side: Side) -> float | None:
 
 def _pyramids(restraint: Restraint, edges: int, side: Side, *, reported: bool = False) -> Constraints:
     scale = restraint.report if reported else None
-    return constraints_of(restraint.contacts, scale, with_friction=True, edges=edges, side=side)
+    return constraints_of(
+        restraint.contacts, scale, with_friction=True, edges=edges, side=side, tangents=restraint.tangents
+    )
 
 
 def _unopposed(restraint: Restraint, settled: Settled, pyramids: Constraints) -> Motion | None:
@@ -124,12 +146,12 @@ def friction_value(restraint: Restraint, constraints: Constraints, motion: Vecto
     normal_parts = np.einsum("rp,rp->r", constraints.rows[:, :plane], velocities)
     tangential = velocities - normal_parts[:, None] * constraints.rows[:, :plane]
     friction = np.array([c.friction for c in restraint.contacts])[owner]
-    sizes = np.hypot(1.0, friction)
+    angles = np.array([c.provenance.normal_error for c in restraint.contacts])[owner]
     sliding = np.linalg.norm(tangential, axis=1)
-    errors = constraints.errors * sizes
+    errors = angles * np.hypot(1.0, friction) * np.linalg.norm(velocities, axis=1)
     if plane == 3:
         torsion = np.array([c.torsion for c in restraint.contacts])[owner] / constraints.scale.length
         sliding = np.hypot(sliding, torsion * (constraints.rows[:, :3] @ turning))
-        errors += friction * torsion * np.array([c.provenance.normal_error for c in restraint.contacts])[owner]
+        errors += angles * friction * torsion * float(np.linalg.norm(turning))
     products = normal_parts + friction * sliding + errors
     return float(constraints.clause_values(products).max())

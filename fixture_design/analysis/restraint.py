@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fixture_design.analysis.branches import Leaf, Settled, UnionQuestions
+from fixture_design.analysis.counting import too_few_to_close
 from fixture_design.analysis.margin import closure_margin
-from fixture_design.arrays import Rows, Vector
+from fixture_design.analysis.normal_errors import blur, still_motion
+from fixture_design.arrays import Points, Rows, Vector
 from fixture_design.contacts import (
     Constraints,
     Contact,
     Scale,
     constraints_of,
+    first_tangents,
     motion_about_origin,
     motion_scaled,
     scale_of,
@@ -68,7 +71,30 @@ class Restraint:
     @cached_property
     def closed(self) -> Settled:
         """Is every branch {o}? Asked once for form closure and accessibility."""
-        return UnionQuestions(self.constraints, self.tolerances).closed()
+        settled = UnionQuestions(self.constraints, self.tolerances).closed()
+        if settled.truth is not None or not self.constraints.errors.any():
+            return settled
+        still, rule = still_motion(self.contacts, self.tolerances), too_few_to_close(self.contacts)
+        if still is not None:
+            return Settled(False, motion=still)
+        if rule is not None:
+            nominal = UnionQuestions(self.constraints.without_errors(), self.tolerances).closed()
+            if nominal.truth is False:
+                return replace(nominal, rule=rule)
+        return self.blamed(settled)
+
+    def blamed(self, settled: Settled) -> Settled:
+        """An outcome whose reason, where it is undecided, names the normals that are off."""
+        return replace(settled, reason=self.reason(settled.reason)) if settled.truth is None else settled
+
+    def reason(self, reason: str | None) -> str | None:
+        """A reason with the normals that may be behind it."""
+        return "; ".join(text for text in (reason, blur(self.contacts, self.tolerances)) if text) or None
+
+    @cached_property
+    def tangents(self) -> list[Points] | None:
+        """First tangents of the friction edges in space: towards the report's reference, so that groups share them."""
+        return first_tangents(self.contacts, self.report.reference) if self.contacts[0].dimension == 6 else None
 
     @cached_property
     def interior(self) -> Settled:
@@ -76,7 +102,7 @@ class Restraint:
         if self.closed.truth:
             # a closed union has none, and its weights prove that too
             return Settled(False, leaves=self.closed.leaves)
-        return UnionQuestions(self.constraints, self.tolerances).has_interior()
+        return self.blamed(UnionQuestions(self.constraints, self.tolerances).has_interior())
 
     @cached_property
     def margin(self) -> float | None:
@@ -96,7 +122,7 @@ class Restraint:
             motion = motion_in_world(settled.motion, constraints.scale)
             scaled = motion_scaled(motion, self.report.reference, self.report.length)
             value = reported.clause_values(reported.rows @ scaled).max() / np.linalg.norm(scaled)
-            return Motion(motion, float(value))
+            return Motion(motion, float(value), settled.rule)
         if settled.leaves:
             return tuple(self._weights(leaf, reported, full_rank) for leaf in settled.leaves)
         return None

@@ -6,7 +6,7 @@ import numpy as np
 
 from fixture_design.arrays import Vector
 from fixture_design.errors import format_length
-from fixture_design.layout import Answer, Finding, Motion, Singular, Weights
+from fixture_design.layout import Answer, Finding, Motion, Rule, Singular, Weights
 
 #: Rotations below this, per unit of size, are translations in words [-].
 _STRAIGHT = 1e-9
@@ -21,11 +21,12 @@ def evidence_in_words(claim: str, finding: Finding, length: float) -> str:
     evidence = finding.evidence
     if isinstance(evidence, Motion):
         lead = "leaves all contacts: " if claim == "strongly_accessible" else "can move: "
-        return lead + motion_in_words(evidence.motion, length)
+        return lead + motion_in_words(evidence.motion, length) + rule_in_words(evidence.rule)
     if isinstance(evidence, Singular):
         if evidence.motion is None:
             return f"rank {evidence.rank}"
-        return f"rank {evidence.rank}; not noticed: {motion_in_words(evidence.motion, length)}"
+        motion = motion_in_words(evidence.motion, length)
+        return f"rank {evidence.rank}; not noticed: {motion}{rule_in_words(evidence.rule)}"
     if isinstance(evidence, tuple):
         return weights_in_words(claim, evidence)
     return ""
@@ -39,6 +40,14 @@ def weights_in_words(claim: str, branches: tuple[Weights, ...]) -> str:
         return f"{', '.join(names)} constrain both ways{in_branches}"
     lead = "can hold any load: " if claim == "force_closure" else ""
     return f"{lead}{', '.join(names)} balance with full rank{in_branches}"
+
+
+def rule_in_words(rule: Rule | None) -> str:
+    """Why errors of normals do not matter, as an addition to the motion; nothing without a rule."""
+    if rule is None:
+        return ""
+    total = sum(block.count for block in rule.counted)
+    return f" (whatever the normals: {rule.name.removeprefix('few ')} count {total} at most)"
 
 
 def motion_in_words(motion: Vector, length: float) -> str:

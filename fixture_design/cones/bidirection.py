@@ -17,6 +17,11 @@ def bidirectional(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) 
     That is so exactly if a_j takes part in a positive balance, sum alpha_i a_i = o with alpha_j > 0 (2-109, 2-111),
     equalities counting in both directions. A zero face vector is bidirectional: its product is always zero.
 
+    Near a tie: balance and span are taken from Tucker's partition, for unit vectors and with numbers up to
+    ``tolerances.tie`` as zero. A pair out of line by less than about tie constrains both ways; a value in the undecided
+    band is not flagged, unlike CONVERT's, which is only asked here of a cone without a face form (and whose ``certain``
+    is lost).
+
     Returns:
         shape (m,), in the order of ``cone.faces``; all False for faces that leave an interior, empty without faces.
     """

@@ -1,4 +1,8 @@
-"""REDUCTION: fewest vectors by dropping one after another (section 2.8.2, Theorem 4)."""
+"""REDUCTION: fewest vectors by dropping one after another (section 2.8.2, Theorem 4).
+
+Near a tie a vector is left out if the others make it up with numbers up to ``tolerances.tie`` taken as zero, and kept
+beyond; a value in the undecided band is not flagged, unlike CONVERT's.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +22,10 @@ def reduce(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Poly
     nonnegative combination of those still kept (2-103, 2-106). They are tried one after another, the last first, so
     that of two that make each other redundant the earlier one stays: testing each against all others at once, as
     (4-16) does, would lose both. What stays is some of the vectors given, unchanged.
+
+    Near a tie: a vector outside the cone of the others by up to about tie goes, so that the cone may shrink (its face
+    form: grow) by as much at each step; vectors that all but balance are equalities up to tie. ``certain`` is that of
+    the cone given, for REDUCTION itself sees no band: `convert_both` reduces too, and tells.
     """
     face = span = None
     if cone.face_form is not None:
@@ -30,7 +38,10 @@ def reduce(cone: PolyhedralConvexCone, tolerances: Tolerances = DEFAULT) -> Poly
 
 
 def irreducible_rows(rows: Rows, both_ways: Rows, tolerances: Tolerances = DEFAULT) -> Indices:
-    """Indices of the rows that stay when those in the cone of the others (and +-both_ways) are dropped one by one."""
+    """Indices of the rows that stay when those in the cone of the others (and +-both_ways) are dropped one by one.
+
+    Near a tie as `in_cone_of`.
+    """
     unit, kept = unit_rows(rows)
     original = np.flatnonzero(kept)
     lines, _ = unit_rows(both_ways)

@@ -2,9 +2,9 @@
 
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
 from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, unit_normal
-from fixture_design.contacts.friction import Side, friction_edges
+from fixture_design.contacts.friction import Side, first_tangents, friction_edges
 from fixture_design.contacts.limit_surface import contact_edges, torsion_of_patch
-from fixture_design.contacts.wrench import face_vectors, motion_about_origin, motion_scaled, velocity
+from fixture_design.contacts.wrench import cross, face_vectors, motion_about_origin, motion_scaled, velocity
 
 __all__ = [
     "ROLES",
@@ -17,7 +17,9 @@ __all__ = [
     "Side",
     "constraints_of",
     "contact_edges",
+    "cross",
     "face_vectors",
+    "first_tangents",
     "friction_edges",
     "motion_about_origin",
     "motion_scaled",

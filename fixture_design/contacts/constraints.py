@@ -9,13 +9,13 @@ A = A_1 u ... u A_N has one cone a branch (2-9). The arrays are flat, so that ma
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point, Rows, Weights
+from fixture_design.arrays import Indices, Point, Points, Rows, Weights
 from fixture_design.contacts.contact import Contact
-from fixture_design.contacts.friction import Side
+from fixture_design.contacts.friction import Side, first_tangents
 from fixture_design.contacts.limit_surface import contact_edges
 from fixture_design.contacts.wrench import face_vectors
 from fixture_design.errors import ContactError, DimensionError
@@ -67,6 +67,10 @@ class Constraints:
             count *= number
         return count
 
+    def without_errors(self) -> Constraints:
+        """The same with the normals as they are given."""
+        return replace(self, errors=np.zeros(len(self.rows)))
+
     def clause_values(self, products: Weights) -> Weights:
         """For each clause the min over its alternatives of the max over their rows of ``products`` (one a row).
 
@@ -105,6 +109,7 @@ def constraints_of(
     with_friction: bool = False,
     edges: int = 8,
     side: Side = "inner",
+    tangents: Sequence[Points] | None = None,
 ) -> Constraints:
     """The constraints of some contacts.
 
@@ -113,6 +118,7 @@ def constraints_of(
         scale: reference and length; by default `scale_of` the contacts.
         with_friction: rows for the edges of the friction cones instead of the normals.
         edges, side: of the friction cones in space, see `contact_edges`.
+        tangents: of their first edges, for each contact one a normal; by default `first_tangents` towards the centroid.
 
     Raises:
         ContactError: no contacts.  DimensionError: planar and spatial contacts mixed.
@@ -122,16 +128,19 @@ def constraints_of(
     if len({contact.dimension for contact in contacts}) != 1:
         raise DimensionError("planar and spatial contacts cannot be mixed")
     scale = scale or scale_of(contacts)
+    if tangents is None and with_friction and len(scale.reference) == 3:
+        tangents = first_tangents(contacts, scale_of(contacts).reference)
     normals, points, moments, errors = [], [], [], []
     alternative, clause_of, contact_of = [], [], []
     for index, contact in enumerate(contacts):
         lever = contact.point - scale.reference
         # a normal off by e moves its row by at most e times the norm of [t; x X t / length] for unit t
         error = contact.provenance.normal_error * float(np.hypot(1.0, np.linalg.norm(lever) / scale.length))
+        firsts = iter(tangents[index] if tangents is not None else [None] * len(contact.normals))
         for clause in contact.clauses:
             for normal in clause:
                 friction = contact.friction if with_friction else 0.0
-                rays, spins = contact_edges(normal, friction, contact.torsion, edges, side)
+                rays, spins = contact_edges(normal, friction, contact.torsion, edges, side, next(firsts))
                 normals.append(rays)
                 moments.append(spins)
                 points.append(np.broadcast_to(lever, rays.shape))

@@ -26,7 +26,7 @@ def torsion_of_patch(radius: float) -> float:
 
 
 def contact_edges(
-    normal: Point, friction: float, torsion: float, edges: int = 8, side: Side = "inner"
+    normal: Point, friction: float, torsion: float, edges: int = 8, side: Side = "inner", first: Point | None = None
 ) -> tuple[Points, Rows]:
     """Edges of the cone of wrenches at a contact point: forces with unit normal component, and moments about it.
 
@@ -36,17 +36,19 @@ def contact_edges(
         normal: outward normal, shape (p,), any length, not zero.
         friction: mu >= 0.  torsion: c >= 0 [m], 0 in the plane.
         edges: around the cone, >= 4 with torsion.  side: which bracket, in space.
+        first: unit tangent that the edges are counted from, in space, as in `friction_edges`.
 
     Returns:
         forces, shape (k, p), and moments [m], shape (k, 3) in space, (k, 1) in the plane.
     """
     if friction == 0 or torsion == 0:
-        forces = friction_edges(normal, friction, edges, side)
+        forces = friction_edges(normal, friction, edges, side, first)
         return forces, np.zeros((len(forces), 1 if len(normal) == 2 else 3))
     unit = unit_normal(normal)
     directions = _crossings(edges)
     reach = friction if side == "inner" else friction / _inner_radius(edges)
-    forces = unit + reach * directions[:, :2] @ np.array(tangents(unit))
+    frame = np.array(tangents(unit) if first is None else (first, np.cross(unit, first)))
+    forces = unit + reach * directions[:, :2] @ frame
     return forces, reach * torsion * directions[:, 2:] * unit
 
 

@@ -80,6 +80,8 @@ def _finding(finding: Finding, brief: bool) -> Data:
         }
         if finding.edges is not None:
             data["edges"] = int(finding.edges)
+        if finding.tangents is not None:
+            data["tangents"] = {name: plain_numbers(tangents) for name, tangents in finding.tangents.items()}
     if finding.reason is not None:
         data["reason"] = finding.reason
     return data

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 
 from fixture_design.contacts import Role
 from fixture_design.io.record_types import Number, Record
-from fixture_design.layout import Requirement, Space
+from fixture_design.layout import Requirement, RuleName, Space
 
 VerdictWord = Literal["yes", "no", "undecided"]
 Row = list[Number]
@@ -34,10 +34,30 @@ class BranchesRecord(Record):
     branches: list[BranchRecord]
 
 
+class CountedRecord(Record):
+    """Contacts counted together: on one plane facet, or one alone."""
+
+    contacts: list[str]
+    count: int = Field(ge=0, description="of their rows (few rows) or normals (few normals), at most")
+
+
+class RuleRecord(Record):
+    """Why the answer holds whatever the normals are: all contacts together have too few rows or normals.
+
+    "few rows": fewer than d rows do not locate, d rows do not close; "few normals": p do not close; d = 6, p = 3 in
+    space, d = 3, p = 2 in the plane. Contacts on one plane facet have one normal, and rows of 1 + the dimension of
+    their points' affine hull.
+    """
+
+    name: RuleName
+    counted: list[CountedRecord]
+
+
 class MotionRecord(Record):
-    """A displacement [dx; dtheta] about W's origin, [m, rad]."""
+    """A displacement [dx; dtheta] about W's origin, [m, rad]; with a rule, of the normals as given."""
 
     motion: Row
+    rule: RuleRecord | None = Field(None, description="why errors of normals do not change the answer")
 
 
 class RankRecord(Record):
@@ -48,6 +68,7 @@ class RankRecord(Record):
     choices: list[Choice] | None = Field(
         None, description="of the branch with the motion; without one, choices of full rank that cover all branches"
     )
+    rule: RuleRecord | None = Field(None, description="why errors of normals do not change the answer")
 
 
 class FindingRecord(Record):
@@ -58,6 +79,11 @@ class FindingRecord(Record):
     witness: WeightsRecord | BranchesRecord | MotionRecord | RankRecord | None = None
     residual: Number | None = Field(None, description="|D^T w| / sum w, or largest d.u / |u|; dimensionless")
     edges: int | None = Field(None, description="friction edges in space")
+    tangents: dict[str, list[Row]] | None = Field(
+        None,
+        description="with edges: for each contact with friction the unit tangent t of each of its normals; the force "
+        "of edge k is n + friction (cos a t + sin a n X t), a = 2 pi k / edges, n of length one",
+    )
     reason: str | None = Field(None, description="why it is undecided")
 
 

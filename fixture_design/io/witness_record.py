@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fixture_design.layout import Evidence, Motion, Singular, Weights
+from fixture_design.layout import Evidence, Motion, Rule, Singular, Weights
 
 Choice = Sequence[tuple[str, int, int]]
 
@@ -16,7 +16,7 @@ def witness_to_dict(evidence: Evidence | None) -> dict[str, object] | None:
     if evidence is None:
         return None
     if isinstance(evidence, Motion):
-        return {"motion": plain_numbers(evidence.motion)}
+        return {"motion": plain_numbers(evidence.motion)} | _rule(evidence.rule)
     if isinstance(evidence, Singular):
         return _singular(evidence)
     if len(evidence) == 1 and not evidence[0].choice:
@@ -30,7 +30,14 @@ def _singular(evidence: Singular) -> dict[str, object]:
         data["motion"] = plain_numbers(evidence.motion)
     if any(evidence.choices):
         data["choices"] = [_choice(choice) for choice in evidence.choices]
-    return data
+    return data | _rule(evidence.rule)
+
+
+def _rule(rule: Rule | None) -> dict[str, object]:
+    if rule is None:
+        return {}
+    counted = [{"contacts": list(block.contacts), "count": int(block.count)} for block in rule.counted]
+    return {"rule": {"name": rule.name, "counted": counted}}
 
 
 def _weights(evidence: Weights) -> dict[str, object]:

@@ -22,11 +22,14 @@ from fixture_design.layout.layout import (
 from fixture_design.layout.pose import Pose
 from fixture_design.layout.verdict import (
     Answer,
+    Counted,
     Evidence,
     Finding,
     GroupVerdict,
     Motion,
     RequirementVerdict,
+    Rule,
+    RuleName,
     Singular,
     Verdict,
     Weights,
@@ -35,6 +38,7 @@ from fixture_design.layout.verdict import (
 __all__ = [
     "Answer",
     "Body",
+    "Counted",
     "Element",
     "Evidence",
     "Finding",
@@ -52,6 +56,8 @@ __all__ = [
     "Pose",
     "Requirement",
     "RequirementVerdict",
+    "Rule",
+    "RuleName",
     "Singular",
     "SoftTip",
     "Space",

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Literal
 
 from fixture_design.arrays import Point, Vector
 from fixture_design.cones import PolyhedralConvexCone
 from fixture_design.contacts import Contact
 from fixture_design.layout.layout import Requirement, Space
+
+#: Rules that make an answer certain whatever the normals are.
+RuleName = Literal["few rows", "few normals"]
 
 
 class Answer(StrEnum):
@@ -28,12 +32,37 @@ class Answer(StrEnum):
         return {Answer.YES: Answer.NO, Answer.NO: Answer.YES}.get(self, self)
 
 
+@dataclass(frozen=True)
+class Counted:
+    """Contacts whose rows are of few dimensions (or whose normals are few), and of how many at most."""
+
+    contacts: tuple[str, ...]
+    count: int
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Why an answer holds for every normal within the errors, although its motion is that of the normals as given.
+
+    Attributes:
+        name: "few rows" or "few normals", see `analysis.counting`. A later rule is a further name.
+        counted: each contact of the group once; their counts add up to too few for the claim.
+    """
+
+    name: RuleName
+    counted: tuple[Counted, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A displacement [dx; dtheta] about W's origin, that every contact admits (or, if strict, that leaves all)."""
+    """A displacement [dx; dtheta] about W's origin, that every contact admits (or, if strict, that leaves all).
+
+    With a ``rule`` the motion is admissible for the normals as given, and the rule vouches for all that they may be.
+    """
 
     motion: Vector
     residual: float
+    rule: Rule | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +96,14 @@ class Singular:
             choice for each set of branches whose rows, with those that have no alternative, have full rank. Together
             these cover all branches.
         residual: |D u| at most, for the motion scaled to length one; 0 without.
+        rule: as in `Motion`; only with a motion.
     """
 
     rank: int
     motion: Vector | None
     choices: tuple[tuple[tuple[str, int, int], ...], ...]
     residual: float
+    rule: Rule | None = None
 
 
 Evidence = Motion | Singular | tuple[Weights, ...]
@@ -88,6 +119,8 @@ class Finding:
         evidence: a motion, a rank, or weights for every branch that needs them; None only if undecided or empty.
         residual: the largest one of the evidence.
         edges: number of friction edges in space, for force closure.
+        tangents: with edges, for each contact with friction the unit tangent t of each normal n, clause after clause:
+            edge k is n + mu (cos a t + sin a n X t) at a = 2 pi k / edges, with n at length one.
         reason: why it is undecided, in words.
     """
 
@@ -96,6 +129,7 @@ class Finding:
     evidence: Evidence | None = None
     residual: float | None = None
     edges: int | None = None
+    tangents: Mapping[str, tuple[Point, ...]] | None = None
     reason: str | None = None
 
 

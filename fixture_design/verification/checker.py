@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
-from fixture_design.layout import Answer, Evidence, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
+from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
 from fixture_design.tolerances import DEFAULT
-from fixture_design.verification.proofs import Case, coverage_fault, motion_fault, rank_fault, weights_fault
+from fixture_design.verification.proofs import Case, Pyramids, coverage_fault, motion_fault, rank_fault, weights_fault
+from fixture_design.verification.rules import rule_fault
 
 
 @dataclass(frozen=True)
@@ -58,15 +58,15 @@ def check(verdict: Verdict) -> list[str]:
             problems.append(f"{group.name}: the verdict has no contacts {', '.join(missing)}")
             continue
         chosen = [contacts[name] for name in group.contacts]
-        problems += check_group(group, chosen, verdict.reference, verdict.length)
+        problems += check_group(group, chosen)
     return problems + _requirement_faults(verdict)
 
 
-def check_group(group: GroupVerdict, contacts: Sequence[Contact], reference: Point, length: float) -> list[str]:
+def check_group(group: GroupVerdict, contacts: Sequence[Contact]) -> list[str]:
     """Problems of one group's findings; empty groups have none to have."""
     if not contacts:
         return [f"{group.name}: {c} is {f.answer} of no contacts" for c, f in group.findings.items() if f.answer]
-    case = Case(contacts, reference, length)
+    case = Case(contacts)
     problems = []
     for claim, finding in group.findings.items():
         problem = _fault(claim, finding, case.opened if claim in _WITH_CLEARANCE_OPEN else case)
@@ -83,17 +83,25 @@ def _fault(claim: str, finding: Finding, case: Case) -> str | None:
     proof = _PROOFS.get((claim, finding.answer))
     if proof is None:
         return "no such question is known"
-    return _proof_fault(proof, finding.evidence, finding.edges or 0, case) or _margin_fault(finding)
+    return _proof_fault(proof, claim, finding, case) or _margin_fault(finding)
 
 
-def _proof_fault(proof: _Proof, evidence: Evidence | None, edges: int, case: Case) -> str | None:
+def _proof_fault(proof: _Proof, claim: str, finding: Finding, case: Case) -> str | None:
+    evidence, pyramids = finding.evidence, None
+    rule = evidence.rule if isinstance(evidence, Motion | Singular) else None
+    if rule is not None:
+        fault = rule_fault(rule, claim, finding.answer, case.contacts)
+        if fault:
+            return fault
     if proof.kind == "motion" and isinstance(evidence, Motion):
-        return motion_fault(evidence, case, strict=proof.strict, friction=proof.friction)
+        return motion_fault(evidence, case, strict=proof.strict, friction=proof.friction, nominal=rule is not None)
     if proof.kind == "rank" and isinstance(evidence, Singular):
-        return rank_fault(evidence, case, full=proof.full)
+        return rank_fault(evidence, case, full=proof.full, nominal=rule is not None)
+    if proof.friction:
+        pyramids = Pyramids(finding.edges or 0, finding.tangents or {})
     if proof.kind == "weights" and isinstance(evidence, tuple) and all(isinstance(w, Weights) for w in evidence):
         for weights in evidence:
-            fault = weights_fault(weights, case, closes=proof.closes, friction=proof.friction, edges=edges)
+            fault = weights_fault(weights, case, closes=proof.closes, pyramids=pyramids)
             if fault:
                 return fault
         return coverage_fault([weights.choice for weights in evidence], case)

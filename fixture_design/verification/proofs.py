@@ -1,21 +1,32 @@
 """What makes a piece of evidence a proof: products, sums and singular values, nothing else.
 
-Each function starts again from points and normals and returns what is wrong, or None. Rows are
-[n; (x - reference) X n / length] with |n| = 1; a normal that may be off by e moves n . v by up to e |v|, and that much
-is held against every proof.
+Each function starts again from points and normals and returns what is wrong, or None. A proof holds in every scale; the
+limits of rounding do not. So rows are taken about the contacts' own centroid, over their own spread, at length one,
+however far from the origin or small beside the part the contacts are. A normal that may be off by e moves n . v by up
+to e |v|, and that much is held against every proof, unless a rule (`rules`) says that normals do not matter.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from fixture_design.arrays import Point, Rows, Vector
-from fixture_design.contacts import Contact, contact_edges, unit_normal
+from fixture_design.arrays import Point, Points, Rows, Vector
+from fixture_design.contacts import (
+    Contact,
+    Scale,
+    contact_edges,
+    cross,
+    motion_scaled,
+    scale_of,
+    unit_normal,
+    velocity,
+)
 from fixture_design.layout import Motion, Singular, Weights
-from fixture_design.tolerances import ROUND_OFF, WITNESS
+from fixture_design.tolerances import DEFAULT, ROUND_OFF, WITNESS
 
 #: A clause of a contact: (contact name, its place among the contact's clauses).
 Place = tuple[str, int]
@@ -23,57 +34,96 @@ Place = tuple[str, int]
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Contacts, and the scale their rows are measured in."""
+    """Contacts, and the scale their rows are measured in: their own."""
 
     contacts: Sequence[Contact]
-    reference: Point
-    length: float
 
     @property
     def opened(self) -> Case:
         """Without the contacts that have clearance; possibly none are left."""
         return replace(self, contacts=[contact for contact in self.contacts if not contact.clearance])
 
-    @property
+    @cached_property
+    def scale(self) -> Scale:
+        return scale_of(self.contacts)
+
+    @cached_property
     def limit(self) -> float:
         """Numbers up to this are rounding: coordinates far from the origin have fewer digits."""
         if not self.contacts:
             return WITNESS
         farthest = max(float(np.linalg.norm(contact.point)) for contact in self.contacts)
-        levers = [float(np.linalg.norm(contact.point - self.reference)) for contact in self.contacts]
-        reach = min(self.length, max(levers) or self.length)
-        return max(WITNESS, 100 * ROUND_OFF * (1 + farthest / reach))
+        return max(WITNESS, 100 * ROUND_OFF * (1 + farthest / self.scale.length))
 
     @property
+    def near(self) -> float:
+        """Numbers beyond this are certainly not zero."""
+        return DEFAULT.at_offset(self.scale.offset).near
+
+    @cached_property
     def alternatives(self) -> dict[Place, int]:
         """How many alternatives every clause has."""
         return {(c.name, i): len(clause) for c in self.contacts for i, clause in enumerate(c.clauses)}
 
-    def rows(self, contact: Contact, normal: Point, friction: float = 0.0, edges: int = 0) -> Rows:
-        """The rows of one normal: one, or one for each edge of its friction cone."""
-        lever = contact.point - self.reference
-        forces, spins = contact_edges(normal, friction, contact.torsion, edges)
-        if len(lever) == 2:
-            moments = (lever[0] * forces[:, 1] - lever[1] * forces[:, 0])[:, None]
-        else:
-            moments = np.cross(lever, forces)
-        return np.hstack([forces, (moments + spins) / self.length])
+    def rows(self, contact: Contact, forces: Points, spins: np.ndarray | None = None) -> Rows:
+        """Wrenches of forces at a contact, of any length, with moments at its point, shape (k, 1) or (k, 3), added."""
+        lever = contact.point - self.scale.reference
+        moments = cross(np.broadcast_to(lever, forces.shape), forces) + (0.0 if spins is None else spins)
+        return np.hstack([forces, moments / self.scale.length])
 
     def error(self, contact: Contact, friction: float = 0.0) -> float:
-        """How far a row may be off."""
-        reach = np.hypot(1.0, np.linalg.norm(contact.point - self.reference) / self.length)
-        spin = friction * contact.torsion / self.length
+        """How far a row of unit normal component may be off."""
+        reach = np.hypot(1.0, np.linalg.norm(contact.point - self.scale.reference) / self.scale.length)
+        spin = friction * contact.torsion / self.scale.length
         return contact.provenance.normal_error * float(reach * np.hypot(1.0, friction) + spin)
 
 
-def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool) -> str | None:
-    """A motion that every contact admits; ``strict``: that leaves every contact; with friction: that none opposes."""
+@dataclass(frozen=True, eq=False)
+class Pyramids:
+    """Friction cones as the evidence has them.
+
+    Attributes:
+        edges: of each cone in space.
+        tangents: for each contact with friction in space, the first tangent of each normal's edges.
+    """
+
+    edges: int
+    tangents: Mapping[str, Sequence[Point]]
+
+    def forces(self, contact: Contact) -> list[tuple[Points, Rows]] | str:
+        """The edges of each normal of a contact, forces and moments, or what is wrong with its tangents.
+
+        Any unit tangent will do: every edge n + mu t is in the friction cone.
+        """
+        if contact.friction == 0 or len(contact.point) == 2:
+            return [contact_edges(normal, contact.friction, contact.torsion) for normal in contact.normals]
+        given = self.tangents.get(contact.name, ())
+        if len(given) != len(contact.normals) or self.edges < 1:
+            return f"{contact.name} has {len(given)} tangents and {self.edges} edges for {len(contact.normals)} normals"
+        pairs = list(zip(contact.normals, given, strict=True))
+        if not all(np.shape(t) == np.shape(n) and _is_tangent(t, n) for n, t in pairs):
+            return f"{contact.name} has a tangent that is not a unit vector across its normal"
+        mu, torsion = contact.friction, contact.torsion
+        return [contact_edges(normal, mu, torsion, self.edges, first=tangent) for normal, tangent in pairs]
+
+
+def _is_tangent(tangent: Point, normal: Point) -> bool:
+    """Whether it is a unit vector across the normal; one with NaN is not."""
+    off = [abs(float(np.linalg.norm(tangent)) - 1), abs(float(unit_normal(normal) @ tangent))]
+    return bool(np.max(off) <= WITNESS)
+
+
+def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool, nominal: bool = False) -> str | None:
+    """A motion that every contact admits; ``strict``: that leaves every contact; with friction: that none opposes.
+
+    ``nominal``: with the normals as they are given, since a rule vouches for all others.
+    """
     motion = _unit_motion(evidence.motion, case)
     if motion is None:
         return "the motion is not a finite vector of the right length, or zero"
     worst = max(
         (
-            min(_work(contact, normal, motion, friction) for normal in clause)
+            min(_work(contact, normal, motion, case, friction, nominal) for normal in clause)
             for contact in case.contacts
             for clause in contact.clauses
         ),
@@ -82,26 +132,31 @@ def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool) 
     return None if worst <= (-case.limit if strict else case.limit) else f"the motion is not admissible: {worst:.1e}"
 
 
-def weights_fault(evidence: Weights, case: Case, *, closes: bool, friction: bool, edges: int) -> str | None:
+def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyramids | None) -> str | None:
     """Weights of one branch that balance; ``closes``: that also span, so that the branch is {o}.
 
     Balance proves s >= -(r + w . e), r = |D^T w| for weights of sum 1 and row errors e. Closure is proved by
-    s >= (sigma_min(diag(w) D) - r) / (1 + |w|) - max e, which must be positive (see `analysis.bounds`).
+    s >= (sigma_min(diag(w) D) - r) / (1 + |w|) - max e, which must be positive (see `analysis.bounds`), and then there
+    is no interior either. That bound alone would have room for an r that is clearly not zero: such weights do not
+    balance, as they claim to, and belong to other normals or edges.
     """
-    found = _weighted_rows(evidence, case, friction=friction, edges=edges)
+    found = _weighted_rows(evidence, case, pyramids)
     if isinstance(found, str):
         return found
     rows, weights, errors, labels = found
     residual = float(np.linalg.norm(weights @ rows))
-    if not closes:
-        total = residual + float(weights @ errors)
-        return None if total <= case.limit else f"the weights do not balance: {total:.1e}"
+    if not residual <= case.near:
+        return f"the weights do not balance: {residual:.1e}"
+    if not closes and residual + float(weights @ errors) <= case.limit:
+        return None
     sizes = np.linalg.svd(weights[:, None] * rows, compute_uv=False)
     rank = rows.shape[1]
     smallest = sizes[rank - 1] if len(sizes) >= rank else 0.0
     margin = (smallest - residual) / (1 + float(np.linalg.norm(weights))) - float(errors.max())
     if margin <= 100 * ROUND_OFF * sizes[0]:
         return f"the weights do not balance and span: {margin:.1e}"
+    if not closes:
+        return None  # closed, and so without interior, however far the normals are off
     basis = [labels.index(place) for place in evidence.basis if place in labels]
     if len(set(basis)) != rank or len(evidence.basis) != rank or not np.all(weights[basis] > 0):
         return "the basis is not one row of positive weight for every dimension"
@@ -109,10 +164,13 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, friction: bool
     return None if independent[-1] > 100 * ROUND_OFF * independent[0] else "the basis rows are not independent"
 
 
-def rank_fault(evidence: Singular, case: Case, *, full: bool) -> str | None:
-    """``full``: choices of full rank that cover all branches; else a motion that some branch does not notice."""
+def rank_fault(evidence: Singular, case: Case, *, full: bool, nominal: bool = False) -> str | None:
+    """``full``: choices of full rank that cover all branches; else a motion that some branch does not notice.
+
+    ``nominal``: as in `motion_fault`.
+    """
     if not full:
-        return _notice_fault(evidence, case)
+        return _notice_fault(evidence, case, nominal)
     rank = case.contacts[0].dimension
     if evidence.rank != rank:
         return f"rank {evidence.rank} is not {rank}"
@@ -123,8 +181,10 @@ def rank_fault(evidence: Singular, case: Case, *, full: bool) -> str | None:
         picked = [
             (c, c.clauses[i][a]) for c in case.contacts for i in range(len(c.clauses)) if (a := _pick(c, i, taken)) >= 0
         ]
-        rows = np.vstack([case.rows(contact, normal) for contact, normal in picked]) if picked else np.zeros((0, rank))
-        error = float(np.linalg.norm([case.error(contact) for contact, _ in picked]))
+        rows = np.vstack([np.zeros((0, rank)), *(case.rows(c, unit_normal(normal)[None, :]) for c, normal in picked)])
+        lengths = np.linalg.norm(rows, axis=1, keepdims=True)
+        rows = rows / lengths
+        error = float(np.linalg.norm([case.error(c) for c, _ in picked] / lengths[:, 0]))
         if len(rows) < rank or np.linalg.svd(rows, compute_uv=False)[-1] <= case.limit + error:
             return "some choice has less than full rank"
     return coverage_fault(evidence.choices, case)
@@ -178,9 +238,9 @@ def _pick(contact: Contact, clause: int, taken: Mapping[Place, int]) -> int:
 
 
 def _weighted_rows(
-    evidence: Weights, case: Case, *, friction: bool, edges: int
+    evidence: Weights, case: Case, pyramids: Pyramids | None
 ) -> tuple[Rows, np.ndarray, np.ndarray, list[tuple[str, int]]] | str:
-    """Rows, weights of sum 1, row errors and labels of a branch; or what is wrong with the weights' form."""
+    """Unit rows, weights of sum 1, row errors and labels of a branch; or what is wrong with the weights' form."""
     taken = _as_choice(evidence.choice, case)
     if isinstance(taken, str):
         return taken
@@ -188,12 +248,16 @@ def _weighted_rows(
         return "the weights name other contacts than the group has"
     rows, values, errors, labels = [], [], [], []
     for contact in case.contacts:
-        mu = contact.friction if friction else 0.0
+        mu = contact.friction if pyramids else 0.0
+        forces = pyramids.forces(contact) if pyramids else [(unit_normal(n)[None, :], None) for n in contact.normals]
+        if isinstance(forces, str):
+            return forces
+        remaining = iter(forces)
         given = np.array(evidence.weights[contact.name])
         expected = 0
         for index, clause in enumerate(contact.clauses):
-            for alternative, normal in enumerate(clause):
-                added = case.rows(contact, normal, mu, edges)
+            for alternative in range(len(clause)):
+                added = case.rows(contact, *next(remaining))
                 part = given[expected : expected + len(added)]
                 if part.any() and _pick(contact, index, taken) != alternative:
                     return f"{contact.name} has weight on an alternative that the branch does not take"
@@ -207,17 +271,19 @@ def _weighted_rows(
     weights = np.concatenate(values)
     if not np.isfinite(weights).all() or weights.min() < 0 or not weights.sum() > 0:
         return "weights must be finite, nonnegative and not all zero"
-    weights = weights / weights.sum()
-    used = np.array(errors) * (weights > 0)
-    return np.vstack(rows), weights, used, labels
+    matrix = np.vstack(rows)
+    lengths = np.linalg.norm(matrix, axis=1)
+    weights = weights * lengths / (weights @ lengths)
+    used = np.array(errors) / lengths * (weights > 0)
+    return matrix / lengths[:, None], weights, used, labels
 
 
-def _notice_fault(evidence: Singular, case: Case) -> str | None:
+def _notice_fault(evidence: Singular, case: Case, nominal: bool) -> str | None:
     motion = None if evidence.motion is None else _unit_motion(evidence.motion, case)
     if motion is None:
         return "there is no finite motion"
     worst = max(
-        min(float(np.abs(case.rows(c, normal) @ _scaled(motion, case))[0]) + case.error(c) for normal in clause)
+        min(max(_work(c, n, motion, case, False, nominal) for n in (normal, -normal)) for normal in clause)
         for c in case.contacts
         for clause in c.clauses
     )
@@ -226,19 +292,23 @@ def _notice_fault(evidence: Singular, case: Case) -> str | None:
 
 def _unit_motion(motion: Vector, case: Case) -> Vector | None:
     """The motion [dx; dtheta] at size one in the case's scale; None if it is no motion."""
-    if motion.shape != (3 if len(case.reference) == 2 else 6,) or not np.isfinite(motion).all():
+    if motion.shape not in ((3,), (6,)) or not np.isfinite(motion).all():
+        return None
+    if not case.contacts:
+        return motion if motion.any() else None
+    if len(motion) != case.contacts[0].dimension:
         return None
     size = float(np.linalg.norm(_scaled(motion, case)))
     return motion / size if size > 0 else None
 
 
 def _scaled(motion: Vector, case: Case) -> Vector:
-    return np.concatenate([_velocity(motion, case.reference), motion[len(case.reference) :] * case.length])
+    return motion_scaled(motion, case.scale.reference, case.scale.length)
 
 
-def _work(contact: Contact, normal: Point, motion: Vector, friction: bool) -> float:
-    """n . v + mu |[v_t; c w_n]|, and what the normal's error may add to it."""
-    v = _velocity(motion, contact.point)
+def _work(contact: Contact, normal: Point, motion: Vector, case: Case, friction: bool, nominal: bool) -> float:
+    """n . v + mu |[v_t; c w_n]| over the length of the normal's row, and what the normal's error may add to it."""
+    v = velocity(motion, contact.point)
     mu = contact.friction if friction else 0.0
     unit = unit_normal(normal)
     along = float(unit @ v)
@@ -247,10 +317,5 @@ def _work(contact: Contact, normal: Point, motion: Vector, friction: bool) -> fl
     if contact.torsion:
         slip = float(np.hypot(slip, contact.torsion * (unit @ motion[3:])))
         unsure += mu * contact.torsion * float(np.linalg.norm(motion[3:]))
-    return along + mu * slip + contact.provenance.normal_error * unsure
-
-
-def _velocity(motion: Vector, point: Point) -> Point:
-    if len(point) == 2:
-        return motion[:2] + motion[2] * np.array([-point[1], point[0]])
-    return motion[:3] + np.cross(motion[3:], point)
+    error = 0.0 if nominal else contact.provenance.normal_error
+    return (along + mu * slip + error * unsure) / float(np.linalg.norm(case.rows(contact, unit[None, :])))
