@@ -11,6 +11,7 @@ from fixture_design.errors import GeometryError, UnsupportedError
 from fixture_design.geometry.mesh_file import read_mesh
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.piece import Piece, rounding_of
+from fixture_design.geometry.scaling import check_scale
 from fixture_design.geometry.soundness import size_notes, sound
 from fixture_design.geometry.urdf import read_urdf
 from fixture_design.layout import Part
@@ -22,7 +23,8 @@ def load_part(part: Part) -> PartGeometry:
     Mesh vertices are multiplied by ``part.scale``; the meshes of a URDF file carry their own scale.
 
     Raises:
-        GeometryError: a mesh that is empty, not finite, flat, not closed or wound inconsistently; a planar part.
+        GeometryError: a mesh that is empty, not finite, flat, not closed or wound inconsistently; a scale that leaves
+            nothing of it, or makes it too large; a planar part.
         FileFormatError: a file that is missing or not what its name says.
         UnsupportedError: STEP; other kinds of files; movable joints; cylinders and spheres in URDF.
     """
@@ -43,4 +45,5 @@ def _mesh_piece(file: Path, scale: float) -> Piece:
     if not (np.isfinite(scale) and scale > 0):
         raise GeometryError("scale must be a number > 0", source=file, found=str(scale))
     vertices, triangles = read_mesh(file)
+    check_scale(vertices, scale, file)
     return Piece(vertices * scale, triangles, rounding_of(vertices) * scale, file)
