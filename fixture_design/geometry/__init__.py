@@ -7,6 +7,7 @@ from fixture_design.geometry.contact import contact_of, polygon_contact
 from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
+from fixture_design.geometry.mesh_file import unreadable
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
 
@@ -21,4 +22,5 @@ __all__ = [
     "load_part",
     "polygon_contact",
     "polygon_of",
+    "unreadable",
 ]
