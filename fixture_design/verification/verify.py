@@ -144,7 +144,6 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
         return GroupVerdict(group.name, names, {question: Finding(None) for question in QUESTIONS})
     restraint = Restraint.of(group.contacts, report, tolerances)
     findings = {name: question(restraint) for name, question in QUESTIONS.items()}
-    notes += [f"{group.name}: {name} is undecided: {f.reason}" for name, f in findings.items() if f.reason]
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:
         notes.append(f"{group.name}: too many contacts or alternatives for the margin of {', '.join(unmeasured)}")
