@@ -37,7 +37,7 @@ def read_document(path: str | Path) -> Document:
     """Reads a file: JSON if its name ends in .json, else YAML 1.2.
 
     Raises:
-        FileFormatError: missing, a folder, not permitted, not text, empty, not valid, or not a mapping.
+        FileFormatError: missing, a folder, a pipe or device, not permitted, not text, empty, not valid, or not a mapping.
     """
     text = _text(Path(path))
     parse = parse_json if Path(path).suffix.lower() == ".json" else parse_yaml
@@ -82,6 +82,8 @@ def _texts(values: object, path: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
 
 def _text(path: Path) -> str:
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never end, or never begin
+            raise FileFormatError("this is no regular file", source=path, expected="a YAML or JSON file")
         raw = path.read_bytes()
     except FileNotFoundError as cause:
         raise FileFormatError("there is no such file", source=path, expected=_neighbours(path)) from cause
@@ -89,6 +91,8 @@ def _text(path: Path) -> str:
         raise FileFormatError("this is a folder", source=path, expected="a file") from cause
     except PermissionError as cause:
         raise FileFormatError("the file may not be read (permission denied)", source=path) from cause
+    except FileFormatError:
+        raise
     except (OSError, ValueError) as cause:  # ValueError: a NUL in the name
         raise FileFormatError(f"the file cannot be read: {cause}", source=path) from cause
     return _decode(raw, path)

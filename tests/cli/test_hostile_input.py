@@ -38,6 +38,52 @@ def test_files_that_cannot_be_read(command: Callable, tmp_path: Path, part: str,
     assert words in ran.err
 
 
+@pytest.mark.parametrize("name", ["fifo.yaml", "fifo.json"])
+def test_a_pipe_that_nobody_writes_to(command: Callable, tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / name)
+    ran = command("verify", tmp_path / name)
+    assert (ran.code, len(ran.err.splitlines())) == (2, 1)
+    assert "this is no regular file" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("content", "package", "words"),
+    [
+        ("<package>", "robot", "package.xml: not XML"),
+        ("<?xml version='1.0' encoding='klingon'?><package/>", "robot", "package.xml: line 1: not XML"),
+        ("<package/>", "robot", "there is no package 'robot'"),
+        ("<package/>", "r" * 5000, "there is no package 'rrr"),
+    ],
+)
+def test_packages(command: Callable, tmp_path: Path, content: str, package: str, words: str) -> None:
+    path = tmp_path / "x.yaml"
+    path.write_text(on_part("{urdf: x.urdf}"))
+    (tmp_path / "package.xml").write_text(content)
+    mesh = f"<mesh filename='package://{package}/a.stl'/>"
+    (tmp_path / "x.urdf").write_text(
+        f"<robot name='r'><link name='l'><collision><geometry>{mesh}</geometry></collision></link></robot>"
+    )
+    ran = command("verify", path)
+    assert (ran.code, len(ran.err.splitlines())) == (2, 1)
+    assert words in ran.err
+    assert "named at line 2, part.urdf" in ran.err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+@pytest.mark.parametrize("name", ["x.yaml", "part.stl", "x.urdf", "package.xml"])
+def test_files_that_may_not_be_read(command: Callable, tmp_path: Path, name: str) -> None:
+    mesh = "<mesh filename='package://robot/part.stl'/>"
+    link = f"<link name='l'><collision><geometry>{mesh}</geometry></collision></link>"
+    (tmp_path / "x.urdf").write_text(f"<robot name='r'>{link}</robot>")
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>")
+    (tmp_path / "part.stl").touch()
+    (tmp_path / "x.yaml").write_text(on_part("{urdf: x.urdf}"))
+    (tmp_path / name).chmod(0)
+    ran = command("verify", tmp_path / "x.yaml")
+    assert (ran.code, len(ran.err.splitlines())) == (2, 1)
+    assert "ermission denied" in ran.err
+
+
 @pytest.mark.parametrize("text", ['"name": "\\ud800"', '"\\ud800": 1', '"stages": [{"name": "\\udfff"}]'])
 def test_half_characters(command: Callable, tmp_path: Path, text: str) -> None:
     path = tmp_path / "x.json"
