@@ -16,7 +16,8 @@ def resolve(name: str, urdf: Path, place: str) -> Path:
     from those that are called ``robot``, and from folders called ``robot`` that lie next to one of them.
 
     Raises:
-        FileFormatError: no name, a package that is not there, a package.xml that cannot be read.  UnsupportedError: http:// and other schemes.
+        FileFormatError: no name, a package that is not there, a package.xml that cannot be read.
+        UnsupportedError: http:// and other schemes.
     """
     if not name.strip():
         raise FileFormatError("a mesh has no filename", source=urdf, place=place)

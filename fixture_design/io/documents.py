@@ -37,7 +37,8 @@ def read_document(path: str | Path) -> Document:
     """Reads a file: JSON if its name ends in .json, else YAML 1.2.
 
     Raises:
-        FileFormatError: missing, a folder, a pipe or device, not permitted, not text, empty, not valid, or not a mapping.
+        FileFormatError: missing, a folder, a pipe or device, not permitted, not text, empty, not valid, or not a
+            mapping.
     """
     text = _text(Path(path))
     parse = parse_json if Path(path).suffix.lower() == ".json" else parse_yaml
