@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from fixture_design.cli.messages import printable
 from fixture_design.cli.words import evidence_in_words
 from fixture_design.layout import Answer, GroupVerdict, Verdict
 
@@ -29,7 +30,8 @@ def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
 
 def _print(verdict: Verdict, console: Console) -> None:
     console.print(
-        f"[bold]{escape(verdict.name)}[/]: {verdict.space}, {len(verdict.contacts)} contacts", highlight=False
+        f"[bold]{escape(printable(verdict.name))}[/]: {verdict.space}, {len(verdict.contacts)} contacts",
+        highlight=False,
     )
     table = Table()
     for heading in ("question", "answer", "margin", "evidence"):

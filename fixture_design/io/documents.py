@@ -100,8 +100,9 @@ def _text(path: Path) -> str:
 
 
 def _decode(raw: bytes, path: Path) -> str:
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise FileFormatError("the file is UTF-16 text", source=path, expected="UTF-8: save it with that encoding")
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff") or raw[:4] == b"\0\0\xfe\xff":
+        bits = 32 if b"\0\0" in raw[:4] else 16
+        raise FileFormatError(f"the file is UTF-{bits} text", source=path, expected="UTF-8: save it with that encoding")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as cause:

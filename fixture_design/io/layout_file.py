@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from fixture_design.io.documents import Document, read_document
@@ -61,5 +60,4 @@ def _layout(document: Document, path: Path) -> Layout:
     record = validated(LayoutRecord, document)
     if problems := list(layout_problems(record)):
         raise content_error(problems, document)
-    layout = layout_from_record(record, path.stem, path, path.parent)
-    return replace(layout, places=layout_places(record, document.place))
+    return layout_from_record(record, path.stem, path, path.parent, layout_places(record, document.place))
