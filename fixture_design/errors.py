@@ -6,7 +6,8 @@ else escapes is a fault of the toolkit (exit code 4).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -24,6 +25,7 @@ class InputError(FixtureDesignError, ValueError):
         place: where in the file ("line 12, elements[2].role"), if known.
         found: the offending value as text, if there is one.
         expected: what would have been right, if that can be said.
+        named_at: where the layout names ``source``, if that is another file than the layout's own.
     """
 
     def __init__(
@@ -36,12 +38,13 @@ class InputError(FixtureDesignError, ValueError):
         expected: str | None = None,
     ) -> None:
         self.problem, self.source, self.place, self.found, self.expected = problem, source, place, found, expected
+        self.named_at: str | None = None
         super().__init__(problem)
 
     def __str__(self) -> str:
         where = ": ".join(str(part) for part in (self.source, self.place) if part)
-        details = [f"found {self.found}" if self.found else "", f"expected {self.expected}" if self.expected else ""]
-        text = "; ".join([self.problem, *filter(None, details)])
+        words = {"found": self.found, "expected": self.expected, "named at": self.named_at}
+        text = "; ".join([self.problem, *(f"{word} {value}" for word, value in words.items() if value)])
         return f"{where}: {text}" if where else text
 
     def within(self, source: str | Path, place: str | None = None) -> InputError:
@@ -49,6 +52,25 @@ class InputError(FixtureDesignError, ValueError):
         self.source = self.source or source
         self.place = self.place or place
         return self
+
+    def met_at(self, source: str | Path | None, place: str | None) -> InputError:
+        """The same error, met while looking at this place of a layout: there, or in a file that it names there."""
+        if self.source is None or str(self.source) == str(source):
+            self.source = source
+            self.place = ": ".join(filter(None, [place, self.place])) or None
+        else:
+            self.named_at = self.named_at or place
+        return self
+
+
+@contextmanager
+def looking_at(source: str | Path | None, place: str | None) -> Iterator[None]:
+    """Errors that come up in here know that this place of a layout was looked at."""
+    try:
+        yield
+    except InputError as error:
+        error.met_at(source, place)
+        raise
 
 
 class FileFormatError(InputError):

@@ -50,6 +50,9 @@ ROUND_FIT = 1e-6
 #: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
 FARTHEST = 1e9
 
+#: Parts smaller than this are mistakes, and Drake refuses them some steps further down [m].
+SMALLEST_PART = 1e-9
+
 #: Largest coefficient of friction [-]: nothing rubs like that, and squares of it keep their digits beside 1.
 MOST_FRICTION = 1e3
 

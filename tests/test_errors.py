@@ -2,7 +2,7 @@
 
 import pytest
 
-from fixture_design.errors import InputError, OffSurfaceError, UnknownNameError, format_length
+from fixture_design.errors import InputError, OffSurfaceError, UnknownNameError, format_length, looking_at
 
 
 @pytest.mark.parametrize(
@@ -18,6 +18,24 @@ def test_a_message_names_everything_it_knows() -> None:
     assert str(error) == "a.yaml: line 3: odd role; found 'x'; expected a role"
     assert str(InputError("odd").within("b.yaml")) == "b.yaml: odd"
     assert str(InputError("odd", source="a.yaml").within("b.yaml")) == "a.yaml: odd"
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (InputError("odd"), "a.yaml: line 5, part: odd"),
+        (InputError("odd", place="element 'L1'"), "a.yaml: line 5, part: element 'L1': odd"),
+        (InputError("odd", source="a.yaml"), "a.yaml: line 5, part: odd"),
+        (InputError("odd", source="b.stl", expected="b"), "b.stl: odd; expected b; named at line 5, part"),
+    ],
+)
+def test_what_goes_wrong_while_looking_at_a_place_knows_it(error: InputError, text: str) -> None:
+    with pytest.raises(InputError) as caught, looking_at("a.yaml", "line 5, part"):
+        raise error
+    assert str(caught.value) == text
+    with pytest.raises(InputError) as caught, looking_at(None, None):
+        raise InputError("odd")
+    assert str(caught.value) == "odd"
 
 
 def test_unknown_names_list_the_known_ones() -> None:

@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from fixture_design.cli.messages import printable
 from fixture_design.cli.words import evidence_in_words
 from fixture_design.layout import Answer, GroupVerdict, Verdict
 
@@ -29,15 +30,17 @@ def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
 
 def _print(verdict: Verdict, console: Console) -> None:
     console.print(
-        f"[bold]{escape(verdict.name)}[/]: {verdict.space}, {len(verdict.contacts)} contacts", highlight=False
+        f"[bold]{escape(printable(verdict.name))}[/]: {verdict.space}, {len(verdict.contacts)} contacts",
+        highlight=False,
     )
     table = Table()
     for heading in ("question", "answer", "margin", "evidence"):
-        table.add_column(heading, justify="right" if heading == "margin" else "left", no_wrap=heading != "evidence")
+        # folded where they do not fit: rich's default cuts off the end
+        table.add_column(heading, justify="right" if heading == "margin" else "left", overflow="fold")
     printed: dict[tuple[str, ...], str] = {}
     for group in verdict.groups.values():
         same = printed.setdefault(group.contacts, group.name)
-        _add_group(table, group, None if same == group.name else same, verdict.length)
+        _add_group(table, group, None if same == group.name else same, verdict)
     console.print(table)
     for requirement in verdict.requirements:
         said = "no contacts" if requirement.answer is None else str(requirement.answer)
@@ -50,11 +53,11 @@ def _print(verdict: Verdict, console: Console) -> None:
 
 
 def _console() -> Console:
-    console = Console()
-    return console if console.is_terminal else Console(width=_PAPER_WIDTH)
+    console = Console(emoji=False)  # a contact may be called :key:
+    return console if console.is_terminal else Console(width=_PAPER_WIDTH, emoji=False)
 
 
-def _add_group(table: Table, group: GroupVerdict, same: str | None, length: float) -> None:
+def _add_group(table: Table, group: GroupVerdict, same: str | None, verdict: Verdict) -> None:
     names = ", ".join(group.contacts) or "no contacts"
     said = f"as {same}" if same else names
     table.add_row(f"[bold]{escape(group.name)}[/]", "", "", f"[dim]{escape(said)}[/]")
@@ -62,6 +65,6 @@ def _add_group(table: Table, group: GroupVerdict, same: str | None, length: floa
         for claim, finding in group.findings.items():
             margin = "" if finding.margin is None else f"{finding.margin + 0.0:.3g}"
             answer = f"[{_STYLE[finding.answer]}]{finding.answer}[/]"
-            evidence = escape(evidence_in_words(claim, finding, length))
+            evidence = escape(evidence_in_words(claim, finding, verdict.reference, verdict.length))
             table.add_row(f"  {claim.replace('_', ' ')}", answer, margin, evidence)
     table.add_section()

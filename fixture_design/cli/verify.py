@@ -14,7 +14,9 @@ from fixture_design.io import dumps, error_record, read_layout, verdict_to_dict
 
 
 def verify(
-    layouts: Annotated[list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT...")],
+    layouts: Annotated[  # `readable`: whether one can be read is not Typer's to say, which would leave out the others
+        list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT...", readable=False)
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout (several: an array).")] = False,
 ) -> None:
     """Say whether layouts locate the part, let it out and hold it, with evidence.

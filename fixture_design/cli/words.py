@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+from math import ceil, log10
+
 import numpy as np
 
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Point, Vector
+from fixture_design.contacts.wrench import velocity
 from fixture_design.errors import format_length
 from fixture_design.layout import Answer, Finding, Motion, Rule, Singular, Weights
 
 #: Rotations below this, per unit of size, are translations in words [-].
 _STRAIGHT = 1e-9
 
+#: Places are given to this part of the size, or finer [-].
+_RESOLUTION = 1e-4
+#: Units of places and the sizes from which they are used, in metres.
+_UNITS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"))
 
-def evidence_in_words(claim: str, finding: Finding, length: float) -> str:
-    """One line for a finding's evidence; ``length`` is the size against which turning counts [m]."""
+
+def evidence_in_words(claim: str, finding: Finding, reference: Point, length: float) -> str:
+    """One line for a finding's evidence; motions are seen from ``reference``, a point of the part, ``length`` its size.
+
+    Args:
+        reference, length: as of the verdict [m].
+    """
     if finding.answer is None:
         return "no contacts"
     if finding.answer is Answer.UNDECIDED:
@@ -21,11 +33,11 @@ def evidence_in_words(claim: str, finding: Finding, length: float) -> str:
     evidence = finding.evidence
     if isinstance(evidence, Motion):
         lead = "leaves all contacts: " if claim == "strongly_accessible" else "can move: "
-        return lead + motion_in_words(evidence.motion, length) + rule_in_words(evidence.rule)
+        return lead + motion_in_words(evidence.motion, reference, length) + rule_in_words(evidence.rule)
     if isinstance(evidence, Singular):
         if evidence.motion is None:
             return f"rank {evidence.rank}"
-        motion = motion_in_words(evidence.motion, length)
+        motion = motion_in_words(evidence.motion, reference, length)
         return f"rank {evidence.rank}; not noticed: {motion}{rule_in_words(evidence.rule)}"
     if isinstance(evidence, tuple):
         return weights_in_words(claim, evidence)
@@ -50,37 +62,40 @@ def rule_in_words(rule: Rule | None) -> str:
     return f" (whatever the normals: {rule.name.removeprefix('few ')} count {total} at most)"
 
 
-def motion_in_words(motion: Vector, length: float) -> str:
-    """A displacement [dx; dtheta] about W's origin as a direction, a turn about an axis, or a screw."""
-    return _planar(motion, length) if len(motion) == 3 else _spatial(motion, length)
+def motion_in_words(motion: Vector, reference: Point, length: float) -> str:
+    """A displacement [dx; dtheta] about W's origin as a direction, a turn about a point, or a screw.
 
-
-def _planar(motion: Vector, length: float) -> str:
-    dx, turn = motion[:2], float(motion[2])
-    if abs(turn) * length <= _STRAIGHT * max(float(np.linalg.norm(dx)), abs(turn) * length):
-        return f"along {_direction(dx)}"
-    centre = np.array([-dx[1], dx[0]]) / turn
-    sense = "counter-clockwise" if turn > 0 else "clockwise"
-    return f"turns {sense} about {_place(centre)}"
-
-
-def _spatial(motion: Vector, length: float) -> str:
-    dx, turn = motion[:3], motion[3:]
+    An axis goes through its point nearest to ``reference``, p = r + dtheta X v / |dtheta|^2 with v the velocity of r:
+    the point nearest to W's origin says little where the part is far from it.
+    """
+    v, turn = velocity(motion, reference), motion[len(reference) :]
     size = float(np.linalg.norm(turn))
-    if size * length <= _STRAIGHT * max(float(np.linalg.norm(dx)), size * length):
-        return f"along {_direction(dx)}"
-    axis_point = np.cross(turn, dx) / size**2
-    pitch = float(turn @ dx) / size**2
-    text = f"turns about {_direction(turn)} through {_place(axis_point)}"
+    if size * length <= _STRAIGHT * max(float(np.linalg.norm(v)), size * length):
+        return f"along {_direction(v)}"
+    return _turn(v, float(turn[0]), reference, length) if len(turn) == 1 else _screw(v, turn, reference, length)
+
+
+def _turn(v: Vector, turn: float, reference: Point, length: float) -> str:
+    centre = reference + np.array([-v[1], v[0]]) / turn
+    return f"turns {'counter-clockwise' if turn > 0 else 'clockwise'} about {place_in_words(centre, length)}"
+
+
+def _screw(v: Vector, turn: Vector, reference: Point, length: float) -> str:
+    axis_point = reference + np.cross(turn, v) / (turn @ turn)
+    pitch = float(turn @ v) / float(turn @ turn)
+    text = f"turns about {_direction(turn)} through {place_in_words(axis_point, length)}"
     if abs(pitch) > _STRAIGHT * length:
         text += f", advancing {format_length(2 * np.pi * pitch)} a turn"
     return text
 
 
+def place_in_words(point: Point, length: float) -> str:
+    """A point in the unit that suits a part of this size, to 1e-4 of it or finer: "(12.5, 0, -3.125) mm"."""
+    unit, name = next((pair for pair in _UNITS if length >= pair[0]), _UNITS[-1])
+    decimals = ceil(-log10(_RESOLUTION * length / unit))
+    return f"({', '.join(f'{value + 0.0:.15g}' for value in np.round(point / unit, decimals))}) {name}"
+
+
 def _direction(vector: Vector) -> str:
     scaled = vector / np.abs(vector).max()
     return "[" + ", ".join(f"{value + 0.0:.3g}" for value in np.round(scaled, 6)) + "]"
-
-
-def _place(point: Vector) -> str:
-    return "(" + ", ".join(format_length(value + 0.0) if value else "0" for value in np.round(point, 9)) + ")"

@@ -7,6 +7,7 @@ from fixture_design.geometry.contact import contact_of, contacts_of_element, pol
 from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
+from fixture_design.geometry.mesh_file import unreadable
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
 from fixture_design.geometry.polygon_sampling import given_polygon_points, sample_polygon
@@ -42,4 +43,5 @@ __all__ = [
     "sample_polygon",
     "sample_surface",
     "slide",
+    "unreadable",
 ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
-from fixture_design.errors import InputError, UnsupportedError
+from fixture_design.errors import InputError, UnsupportedError, looking_at
 from fixture_design.geometry.contact import contacts_of_element, polygon_contacts
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
@@ -53,22 +53,21 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
         )
     part = layout.part
     if part is None:
-        raise InputError("there are elements but no part for them to touch", source=layout.source, expected="part: ...")
+        place = layout.places.get(("elements", layout.elements[0].name)) if layout.elements else None
+        problem = "there are elements but no part for them to touch"
+        raise InputError(problem, source=layout.source, place=place, expected="part: ...")
     if (part.kind == "polygon") != (layout.space == "planar"):
         problem = f"part {part.name!r} does not fit a {layout.space} layout"
-        raise InputError(problem, source=layout.source, found=f"kind {part.kind!r}")
-    geometry = geometry or load_geometry(part)
-    try:
-        contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, geometry))
-    except InputError as error:
-        if layout.source:
-            error.within(layout.source)
-        raise
+        raise InputError(problem, source=layout.source, place=layout.places.get(("part",)), found=f"kind {part.kind!r}")
+    with looking_at(layout.source, layout.places.get(("part",))):
+        geometry = geometry or load_geometry(part)
+    contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, geometry))
     center = part.pose.points(geometry.box_center[None])[0]
     return GeometryContacts(contacts, geometry.notes, center, geometry.half_diagonal)
 
 
 def _contacts(element: Element, layout: Layout, part: Part, geometry: PartGeometry | Polygon) -> tuple[Contact, ...]:
-    if isinstance(geometry, Polygon):
-        return polygon_contacts(element, part, layout.friction, layout.surface_gap, geometry)
-    return contacts_of_element(element, geometry, part.pose, layout.friction, layout.surface_gap, part.name)
+    with looking_at(layout.source, layout.places.get(("elements", element.name))):
+        if isinstance(geometry, Polygon):
+            return polygon_contacts(element, part, layout.friction, layout.surface_gap, geometry)
+        return contacts_of_element(element, geometry, part.pose, layout.friction, layout.surface_gap, part.name)

@@ -11,6 +11,7 @@ from fixture_design.errors import FileFormatError, GeometryError
 from fixture_design.geometry.mesh_file import read_mesh
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.piece import Piece
+from fixture_design.geometry.scaling import check_scale
 from fixture_design.geometry.soundness import size_notes, sound
 from fixture_design.geometry.step_file import STEP_ENDINGS
 from fixture_design.geometry.urdf import read_urdf
@@ -23,7 +24,8 @@ def load_part(part: Part) -> PartGeometry:
     Mesh vertices are multiplied by ``part.scale``; the meshes of a URDF file carry their own scale.
 
     Raises:
-        GeometryError: a mesh that is empty, not finite, flat, not closed or wound inconsistently; a planar part.
+        GeometryError: a mesh that is empty, not finite, flat, not closed or wound inconsistently; a scale that leaves
+            nothing of it, or makes it too large; a planar part.
         FileFormatError: a file that is missing or not what its name says.
         UnsupportedError: STEP without its extra package; other kinds of files; movable joints.
     """
@@ -44,4 +46,5 @@ def _mesh_piece(file: Path, scale: float) -> Piece:
     if not (np.isfinite(scale) and scale > 0):
         raise GeometryError("scale must be a number > 0", source=file, found=str(scale))
     mesh = read_mesh(file)
+    check_scale(mesh.vertices, scale, file)
     return Piece(mesh.vertices * scale, mesh.triangles, mesh.rounding * scale, file)

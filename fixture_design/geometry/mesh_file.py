@@ -7,6 +7,7 @@ from pathlib import Path
 from fixture_design.errors import FileFormatError, InputError, UnsupportedError
 from fixture_design.geometry.scene import RawMesh, flattened
 from fixture_design.geometry.step_file import STEP_ENDINGS, step_scene
+from fixture_design.geometry.stl_check import faulty_line, stl_problem
 
 #: What this version reads, by the end of the file's name.
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".ply", ".gltf", ".glb", ".3mf", *STEP_ENDINGS)
@@ -36,6 +37,9 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
         )
     if problem := unreadable(file):
         raise FileFormatError(f"{problem}: {str(file)!r:.200}", expected="an existing file", **where)
+    is_stl = file.suffix.lower() == ".stl"
+    if is_stl and (wrong := stl_problem(file)):
+        raise FileFormatError(wrong.problem, found=wrong.found, expected=wrong.expected, **where)
     import trimesh
 
     try:
@@ -47,7 +51,8 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
         raise
     except Exception as cause:  # readers raise whatever their parsers do; all of it means that the file is no such mesh
         kind = file.suffix[1:].upper()
-        raise FileFormatError(f"{file.name} cannot be read as {kind}", found=_first_line(cause), **where) from cause
+        found = (is_stl and faulty_line(file)) or _first_line(cause)
+        raise FileFormatError(f"{file.name} cannot be read as {kind}", found=found, **where) from cause
     return flattened(scene)
 
 

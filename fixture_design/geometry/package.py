@@ -16,7 +16,8 @@ def resolve(name: str, urdf: Path, place: str) -> Path:
     from those that are called ``robot``, and from folders called ``robot`` that lie next to one of them.
 
     Raises:
-        FileFormatError: no name, or a package that is not there.  UnsupportedError: http:// and other schemes.
+        FileFormatError: no name, a package that is not there, a package.xml that cannot be read.
+        UnsupportedError: http:// and other schemes.
     """
     if not name.strip():
         raise FileFormatError("a mesh has no filename", source=urdf, place=place)
@@ -31,18 +32,25 @@ def resolve(name: str, urdf: Path, place: str) -> Path:
     for folder in urdf.resolve().parents:
         if _package_name(folder) == package or folder.name == package:
             return folder / path
-        if (folder / package).is_dir():
+        if _is_folder(folder / package):
             return folder / package / path
     raise FileFormatError(
-        f"there is no package {package!r}",
+        f"there is no package {package!r:.200}",
         source=urdf,
         place=place,
-        expected=f"a package.xml with <name>{package}</name> in a folder above the file",
+        expected="a package.xml with that <name> in a folder above the file",
     )
 
 
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError:  # a name longer than any folder's
+        return False
+
+
 def _package_name(folder: Path) -> str | None:
-    """The name in the folder's package.xml, None without a readable one."""
+    """The name in the folder's package.xml, None without one or if it names nothing."""
     file = folder / "package.xml"
     if not file.is_file():
         return None
@@ -50,4 +58,8 @@ def _package_name(folder: Path) -> str | None:
         name = ElementTree.parse(file).getroot().findtext("name")
     except ElementTree.ParseError as cause:
         raise FileFormatError("not XML", source=file, found=str(cause), expected="a ROS package.xml") from cause
+    except (LookupError, ValueError) as cause:  # an encoding that Python or its XML parser does not know
+        raise FileFormatError("not XML", source=file, place="line 1", found=str(cause), expected="UTF-8") from cause
+    except OSError as cause:
+        raise FileFormatError(f"the file cannot be read ({cause.strerror or cause})", source=file) from cause
     return name.strip() if name else None

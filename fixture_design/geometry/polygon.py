@@ -14,7 +14,7 @@ from fixture_design.geometry.local import LocalSurface
 from fixture_design.geometry.shapes import OfEdge, PolygonVertices
 from fixture_design.geometry.smoothness import FacetMeasures, provenances
 from fixture_design.layout import Part
-from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES, SMOOTH_ANGLE, ZERO_COORDINATE
+from fixture_design.tolerances import COPLANAR_ANGLE, FARTHEST, MERGE_VERTICES, SMOOTH_ANGLE, ZERO_COORDINATE
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +117,8 @@ def polygon_of(part: Part) -> Polygon:
     """The polygon of a planar part.
 
     Raises:
-        GeometryError: no polygon, fewer than three vertices, not finite, repeated vertices, sides that cross or
-            overlap, no area, clockwise.
+        GeometryError: no polygon, fewer than three vertices, not finite or too far, repeated vertices, sides that cross
+            or overlap, no area, clockwise.
     """
     if part.polygon is None:
         raise GeometryError(f"planar part {part.name!r} has no polygon", expected="polygon: [[x, y], ...]")
@@ -161,6 +161,10 @@ def _check(name: str, vertices: np.ndarray) -> None:
     if not np.isfinite(vertices).all():
         bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
         raise GeometryError(f"{what} has a vertex that is not finite", found=f"vertex {bad + 1}: {vertices[bad]}")
+    if np.abs(vertices).max() > FARTHEST:
+        raise GeometryError(
+            f"{what} reaches too far", found=f"{np.abs(vertices).max():g} m", expected=f"at most {FARTHEST:g} m"
+        )
     size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     import shapely
     from scipy.spatial import KDTree

@@ -14,6 +14,7 @@ from fixture_design.geometry.mesh_file import read_mesh
 from fixture_design.geometry.package import resolve
 from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.primitives import Primitive, box, capsule, cylinder, sphere
+from fixture_design.geometry.scaling import check_scale
 from fixture_design.geometry.urdf_tree import UrdfFile, composed, links_in_root, robot_of
 from fixture_design.layout import Pose
 from fixture_design.tolerances import ROUND_OFF
@@ -89,6 +90,7 @@ def _mesh(urdf: UrdfFile, geometry: ElementTree.Element, place: str) -> Piece:
     if (scale == 0).any():
         raise urdf.error("a scale of 0", place, found=geometry.get("scale"), expected="factors to metres")
     mesh = read_mesh(resolve(name, urdf.file, place), place, urdf.file)
+    check_scale(mesh.vertices, float(np.abs(scale).max()), urdf.file, place)
     # a mirror image turns the winding inside out
     triangles = mesh.triangles[:, ::-1] if np.prod(scale) < 0 else mesh.triangles
     return Piece(mesh.vertices * scale, triangles, mesh.rounding * np.abs(scale).max(), urdf.file, place)

@@ -37,7 +37,8 @@ def read_document(path: str | Path) -> Document:
     """Reads a file: JSON if its name ends in .json, else YAML 1.2.
 
     Raises:
-        FileFormatError: missing, a folder, not permitted, not text, empty, not valid, or not a mapping.
+        FileFormatError: missing, a folder, a pipe or device, not permitted, not text, empty, not valid, or not a
+            mapping.
     """
     text = _text(Path(path))
     parse = parse_json if Path(path).suffix.lower() == ".json" else parse_yaml
@@ -82,6 +83,8 @@ def _texts(values: object, path: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
 
 def _text(path: Path) -> str:
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never end, or never begin
+            raise FileFormatError("this is no regular file", source=path, expected="a YAML or JSON file")
         raw = path.read_bytes()
     except FileNotFoundError as cause:
         raise FileFormatError("there is no such file", source=path, expected=_neighbours(path)) from cause
@@ -89,14 +92,17 @@ def _text(path: Path) -> str:
         raise FileFormatError("this is a folder", source=path, expected="a file") from cause
     except PermissionError as cause:
         raise FileFormatError("the file may not be read (permission denied)", source=path) from cause
+    except FileFormatError:
+        raise
     except (OSError, ValueError) as cause:  # ValueError: a NUL in the name
         raise FileFormatError(f"the file cannot be read: {cause}", source=path) from cause
     return _decode(raw, path)
 
 
 def _decode(raw: bytes, path: Path) -> str:
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise FileFormatError("the file is UTF-16 text", source=path, expected="UTF-8: save it with that encoding")
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff") or raw[:4] == b"\0\0\xfe\xff":
+        bits = 32 if b"\0\0" in raw[:4] else 16
+        raise FileFormatError(f"the file is UTF-{bits} text", source=path, expected="UTF-8: save it with that encoding")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as cause:

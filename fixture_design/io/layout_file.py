@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fixture_design.io.documents import Document, read_document
 from fixture_design.io.json_writer import json_text
+from fixture_design.io.layout_places import layout_places
 from fixture_design.io.layout_reading import layout_from_record
 from fixture_design.io.layout_rules import layout_problems
 from fixture_design.io.layout_writing import layout_data
@@ -38,8 +39,8 @@ def layout_from_data(values: Mapping[str, object], source: str | Path, places: P
 def write_layout(layout: Layout, path: str | Path) -> None:
     """Writes a layout as YAML (or JSON, by the suffix), in metres, with file names relative to the new file.
 
-    Reading the file gives the same layout, every number to the last bit, but for the name of its source, `units`, which
-    are m now, and rotations that no short angles give: those agree within rounding (1e-15).
+    Reading the file gives the same layout, every number to the last bit, but for the name of its source and places in
+    it, `units`, which are m now, and rotations that no short angles give: those agree within rounding (1e-15).
 
     The file is replaced at once: whoever reads it sees the old layout or the new one.
 
@@ -59,4 +60,4 @@ def _layout(document: Document, path: Path) -> Layout:
     record = validated(LayoutRecord, document)
     if problems := list(layout_problems(record)):
         raise content_error(problems, document)
-    return layout_from_record(record, path.stem, path, path.parent)
+    return layout_from_record(record, path.stem, path, path.parent, layout_places(record, document.place))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from fixture_design.arrays import Point, read_only
 from fixture_design.contacts import Contact
+from fixture_design.errors import looking_at
 from fixture_design.io.records import (
     BodyRecord,
     ContactRecord,
@@ -52,9 +53,19 @@ _METRES: dict[str, Callable[[float], float]] = {
 }
 
 
-def layout_from_record(record: LayoutRecord, name: str, source: Path | None, folder: Path) -> Layout:
-    """The layout; ``name`` where the record has none, files relative to ``folder``."""
+def layout_from_record(
+    record: LayoutRecord, name: str, source: Path | None, folder: Path, places: Mapping[tuple[str, ...], str]
+) -> Layout:
+    """The layout; ``name`` where the record has none, files relative to ``folder``, ``places`` as in `Layout`.
+
+    Raises:
+        ContactError: a contact given outright that cannot be computed with.
+    """
     convert = _Converter(record, folder)
+    contacts = []
+    for contact in record.contacts:
+        with looking_at(source, places.get(("contacts", contact.name))):
+            contacts.append(convert.contact(contact))
     require = record.require
     groups = {key: getattr(require, key) for key in ("locators", "all")} if require else {}
     return Layout(
@@ -66,7 +77,7 @@ def layout_from_record(record: LayoutRecord, name: str, source: Path | None, fol
         surface_gap=SURFACE_GAP if record.surface_gap is None else convert.metres(record.surface_gap),
         elements=tuple(map(convert.element, record.elements)),
         bodies=tuple(map(convert.body, record.bodies)),
-        contacts=tuple(map(convert.contact, record.contacts)),
+        contacts=tuple(contacts),
         key_features=tuple(map(convert.key_feature, record.key_features)),
         loads=tuple(map(convert.load, record.loads)),
         stages=tuple(map(_stage, record.stages)),
@@ -74,6 +85,7 @@ def layout_from_record(record: LayoutRecord, name: str, source: Path | None, fol
         sweep=convert.sweep(record.sweep) if record.sweep else None,
         source=source,
         units=record.units,
+        places=places,
     )
 
 

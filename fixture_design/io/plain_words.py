@@ -138,7 +138,7 @@ def _expected(kind: str, limits: dict[str, Any], found: object, wanted: Any) -> 
         case "float_type":
             return _number_wanted(found)
         case "string_type":
-            return f"text in quotes: '{found}'" if isinstance(found, int | float) else "text"
+            return f"text in quotes: '{show(found)}'" if isinstance(found, int | float) else "text"
         case "tuple_type":
             return _list_wanted(wanted)
         case "model_type":

@@ -18,7 +18,7 @@ _KINDS = {
     "verdict": ("a verdict, which is a result", "batch --against"),
 }
 
-_SCHEMA = re.compile(r"fixture_design/([a-z_]+)/([0-9]+)")
+_SCHEMA = re.compile(r"fixture_design/([a-z_]+)/([0-9]{1,9})")
 
 
 def require_schema(document: Document, kind: str, version: int = 1) -> None:

@@ -41,9 +41,8 @@ def groups_of(layout: Layout, contacts: Sequence[Contact]) -> tuple[Group, ...]:
         names = {*ROLES, *owners, *owners.values()}
         for active in stage.active:
             if active not in names:
-                raise UnknownNameError(
-                    "role, element or contact", active, names, source=layout.source, place=f"stage {stage.name!r}"
-                )
+                place = layout.places.get(("stages", stage.name)) or f"stage {stage.name!r}"
+                raise UnknownNameError("role, element or contact", active, names, source=layout.source, place=place)
         chosen = tuple(c for c in contacts if {c.role, c.name, owners[c.name]} & set(stage.active))
         groups.append(Group(stage.name, chosen, stage.require))
     return tuple(groups)

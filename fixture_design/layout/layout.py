@@ -190,6 +190,8 @@ class Layout:
         stages: groups with requirements; ``require`` holds those of the groups "locators" and "all".
         sweep: settings for a batch of variants, as read.
         units: of the file it came from, for display only.
+        places: in that file, as messages name them: of the part under ("part",), of all that has a name under
+            ("elements", name) and so on; empty for layouts from no file.
     """
 
     name: str
@@ -208,3 +210,4 @@ class Layout:
     sweep: Mapping[str, object] | None = None
     source: Path | None = None
     units: Literal["m", "mm", "in"] = "m"
+    places: Mapping[tuple[str, ...], str] = field(default_factory=dict)

@@ -26,7 +26,7 @@ from fixture_design.analysis import (
 )
 from fixture_design.cones.kernel import NAME as KERNEL
 from fixture_design.contacts import Contact, Scale, scale_of, unit_normal
-from fixture_design.errors import ConeError, ContactError
+from fixture_design.errors import ConeError, ContactError, FileFormatError
 from fixture_design.layout import (
     Answer,
     Finding,
@@ -93,18 +93,33 @@ def contacts_of(layout: Layout) -> FoundContacts:
     """Every contact of a layout: those of its elements in file order, of its bodies, then those given outright.
 
     Raises:
-        ContactError: there are none.  GeometryError and others: from the geometry.
+        ContactError: there are none.  FileFormatError: the part's file is not there.  GeometryError and
+            others: from the geometry.
     """
     if not (layout.elements or layout.bodies):
         if not layout.contacts:
             problem = "the layout has no contacts: give `elements`, `bodies` or `contacts`"
             raise ContactError(problem, source=layout.source)
+        _check_part_file(layout)
         return FoundContacts(layout.contacts, scale_of(layout.contacts), ())
     from fixture_design.geometry import contacts_of_elements  # noqa: PLC0415 - Drake only where there is geometry
 
     found = contacts_of_elements(layout)
     contacts = (*found.contacts, *layout.contacts)
     return FoundContacts(contacts, Scale(found.box_center, found.half_diagonal), found.notes)
+
+
+def _check_part_file(layout: Layout) -> None:
+    """A part that nothing touches is not read, but whoever names its file means one that is there."""
+    if layout.part is None or layout.part.file is None:
+        return
+    from fixture_design.geometry import unreadable  # noqa: PLC0415 - not for layouts without a part
+
+    if problem := unreadable(layout.part.file, f"{layout.part.kind} file"):
+        raise FileFormatError(
+            f"{problem}: {str(layout.part.file)!r:.200}", source=layout.source, place=layout.places.get(("part",)),
+            expected="an existing file",
+        )  # fmt: skip
 
 
 def group_verdicts(
@@ -129,7 +144,6 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
         return GroupVerdict(group.name, names, {question: Finding(None) for question in QUESTIONS})
     restraint = Restraint.of(group.contacts, report, tolerances)
     findings = {name: question(restraint) for name, question in QUESTIONS.items()}
-    notes += [f"{group.name}: {name} is undecided: {f.reason}" for name, f in findings.items() if f.reason]
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:
         notes.append(f"{group.name}: too many contacts or alternatives for the margin of {', '.join(unmeasured)}")

@@ -49,15 +49,32 @@ CASES: dict[str, tuple[str | bytes | None, list[str]]] = {
     "missing URDF": (on_part("{urdf: nope.urdf}"), ["nope.urdf", "there is no such file", "expected a URDF file"]),
     "mesh not closed": (
         on_part("{mesh: open.obj}"),
-        ["open.obj: the mesh has 3 open edges", "found one at [0.0, 0.0, 0.5] m", "expected a closed surface"],
+        [
+            "open.obj: the mesh has 3 open edges",
+            "found one at [0.0, 0.0, 0.5] m",
+            "expected a closed surface",
+            "named at line 2, part.mesh",
+        ],
+    ),
+    "missing mesh that nothing touches": (
+        contact("point: [0, 0, 0], normal: [0, 0, 1]").replace("space: spatial", "part: {mesh: nope.stl}"),
+        ["line 2, part.mesh: there is no mesh file: ", "nope.stl", "expected an existing file"],
+    ),
+    "a contact that the element does not have": (
+        on_part("{mesh: closed.obj}") + "stages:\n- {name: s, active: ['L1#2']}\n",
+        ["line 6, stages[0]: no role, element or contact is called 'L1#2'; did you mean 'L1'? there are: L1, clamp"],
     ),
     "off the surface": (
         on_part("{mesh: closed.obj}", at="[0.2, 0.2, -0.0042]"),
-        ["element 'L1' is 4.2 mm off the surface of 'closed'", "nearest: facet ", "raise `surface_gap` (10 um)"],
+        [
+            "line 4, elements[0]: element 'L1' is 4.2 mm off the surface of 'closed'",
+            "nearest: facet ",
+            "raise `surface_gap` (10 um)",
+        ],
     ),
     "inside": (
         on_part("{mesh: closed.obj}", at="[0.2, 0.2, 0.001]"),
-        ["element 'L1' is 1 mm inside 'closed'", "nearest: facet "],
+        ["line 4, elements[0]: element 'L1' is 1 mm inside 'closed'", "nearest: facet "],
     ),
     "normal of length 0": (
         contact("point: [0, 0, 0], normal: [0, 0, 0]"),
@@ -87,7 +104,7 @@ CASES: dict[str, tuple[str | bytes | None, list[str]]] = {
     "no contacts": (HEAD, ["the layout has no contacts", "give `elements`, `bodies` or `contacts`"]),
     "elements without a part": (
         HEAD + "elements:\n  - {name: L1, role: locator, at: [0, 0, 0]}\n",
-        ["elements", "part"],
+        ["line 3, elements[0]: there are elements but no part", "expected part: ..."],
     ),
     "planar with three coordinates": (
         contact("point: [0, 0, 0], normal: [0, 1]", space="planar"),

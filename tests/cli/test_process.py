@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.layouts import contact
+
 ROOT = Path(__file__).resolve().parents[2]
 LAYOUT = "urdf/figure8/p12345.layout.yaml"
 SCRIPT = Path(sys.executable).with_name("fixture-design")
@@ -52,6 +54,17 @@ def test_what_is_loaded(arguments: list[str], loaded: list[str]) -> None:
 def test_the_probe_sees_what_geometry_loads(arguments: list[str], loaded: list[str]) -> None:
     said = process(sys.executable, "-c", PROBE, *arguments).stderr.splitlines()[-1]
     assert all(repr(name) in said for name in loaded)
+
+
+def test_a_part_that_nothing_touches_must_be_there_but_is_not_read(tmp_path: Path) -> None:
+    path, mesh = tmp_path / "x.yaml", tmp_path / "part.stl"
+    path.write_text(contact("point: [0, 0, 0], normal: [0, 0, 1]").replace("space: spatial", "part: {mesh: part.stl}"))
+    ran = process(sys.executable, "-c", PROBE, "verify", "--json", path)
+    assert ran.returncode == 2
+    assert "line 2, part.mesh: there is no mesh file" in ran.stderr
+    mesh.touch()
+    ran = process(sys.executable, "-c", PROBE, "verify", "--json", path)
+    assert (ran.returncode, ran.stderr) == (0, "[]\n")
 
 
 @pytest.mark.skipif(not SCRIPT.is_file(), reason="the script is not installed next to this Python")

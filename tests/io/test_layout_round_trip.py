@@ -44,7 +44,7 @@ require: {locators: [deterministic, strongly_accessible], all: [form_closure]}
 
 
 def assert_same(one: object, other: object, where: str = "layout") -> None:
-    """Equal to the last bit; rotations within rounding; source and units may differ."""
+    """Equal to the last bit; rotations within rounding; source, its places and units may differ."""
     if isinstance(one, np.ndarray):
         assert isinstance(other, np.ndarray), where
         rounding = 1e-15 if where.endswith("rotation") else 0
@@ -53,7 +53,7 @@ def assert_same(one: object, other: object, where: str = "layout") -> None:
     elif dataclasses.is_dataclass(one):
         assert type(one) is type(other), where
         for field in dataclasses.fields(one):
-            if field.name not in ("source", "units"):
+            if field.name not in ("source", "units", "places"):
                 assert_same(getattr(one, field.name), getattr(other, field.name), f"{where}.{field.name}")
     elif isinstance(one, tuple):
         assert isinstance(other, tuple), where
@@ -85,6 +85,9 @@ def test_the_layout_of_the_format_description_reads(tmp_path: Path) -> None:
     assert layout.require["all"] == ("form_closure",)
     assert layout.stages[1].loads == ("cutting",)
     assert layout.source == path
+    assert layout.places["part",] == "line 5, part.urdf"
+    assert layout.places["elements", "L1"].startswith("line ")
+    assert layout.places["elements", "L1"].endswith(", elements[0]")
 
 
 def test_the_least_layout(tmp_path: Path) -> None:
@@ -137,7 +140,7 @@ def assert_close(one: object, other: object) -> None:
 def _leaves(value: object) -> list[str]:
     if dataclasses.is_dataclass(value):
         pairs = [(field.name, getattr(value, field.name)) for field in dataclasses.fields(value)]
-        return [f"{name}: {_leaves(item)}" for name, item in pairs if name not in ("units", "source")]
+        return [f"{name}: {_leaves(item)}" for name, item in pairs if name not in ("units", "source", "places")]
     if isinstance(value, Mapping):
         return [f"{key}: {_leaves(item)}" for key, item in value.items()]
     if isinstance(value, tuple | list | np.ndarray):
