@@ -56,6 +56,7 @@ class Contact:
         provenance: of the normals.
         distance: signed distance between surface and tip as it was found [m], None for contacts given outright.
         feature: name of the facet, edge or apex touched, None for contacts given outright.
+        linked: for one end of a segment on which a convex edge touches a parallel one, the contact at its other end.
 
     Raises:
         ContactError: no normal, zero or non-finite normal, non-finite or absurdly far point, negative friction.
@@ -74,6 +75,7 @@ class Contact:
     provenance: Provenance = field(default_factory=Provenance)
     distance: float | None = None
     feature: str | None = None
+    linked: str | None = None
 
     def __post_init__(self) -> None:
         point = read_only(self.point)
