@@ -90,6 +90,8 @@ def _around(line: Vector3, normals: Normals) -> Directions:
     traces = np.cross(normals[containing], line)
     angles = np.arctan2(traces @ other, traces @ side)
     angles = np.unique(np.mod([angles, angles + np.pi], 2 * np.pi))
+    # opposite facets are of one plane, twice only by rounding
+    angles = angles[np.diff(angles, prepend=angles[-1] - 2 * np.pi) > _IN_PLANE]
     middles = angles + np.diff([*angles, angles[0] + 2 * np.pi]) / 2
     reach = 0.5 * np.abs(heights[~containing]).min(initial=1.0)
     return line + reach * (np.outer(np.cos(middles), side) + np.outer(np.sin(middles), other))

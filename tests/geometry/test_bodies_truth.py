@@ -29,7 +29,8 @@ RIDGE = Solid((WEDGE,)).placed(DOWN)
 SPIKE = Solid((PYRAMID,)).placed(DOWN)
 NOTCH = Solid((cuboid([-1, -1, -1], [1, 1, 0]), cuboid([-1, -1, 0], [0, 1, 1])))
 CORNER = Solid((*NOTCH.pieces, cuboid([0, -1, 0], [1, 0, 1])))
-SADDLE = heap({(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1), (1, 1, 1)}, 0.7, (-1, -1, -1))
+SADDLE = heap({(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1)}, 0.7, (-1, -1, -1))
+THORN = Convex.hull([[0, 0, 0], [0.5, 0.2, 0.4], [0.2, 0.5, 0.4], [0.4, 0.4, 0.7]])
 L_PART = heap({(0, 0, 0), (1, 0, 0), (0, 0, 1)}, 0.4, (-1, -0.5, -1)).placed(turn([0, 1, 0], np.pi))
 VEE = Solid((bar([[0, 0], [1, 1], [1.2, 1], [1.2, -0.4], [0, -0.4]], 0.8), bar([[0, 0], [-1, 1], [-1.2, 1], [-1.2, -0.4], [0, -0.4]], 0.8)))
 YAW = np.array([0, 0, 1.0])
@@ -65,10 +66,10 @@ KINDS = {
     "block in a corner": lambda r: (Solid((cuboid([0, 0, 0], [0.4, 0.3, 0.5]),)), CORNER),
     "spike in a corner": lambda r: (Solid((Convex.hull([[0, 0, 0], [1, 0.3, 0.2], [0.2, 1, 0.3], [0.3, 0.2, 1]]),)), CORNER),
     "face on a saddle": lambda r: (Solid((BLOCK.placed(_yaw(r), np.array([0, 0, 0.7])),)), SADDLE),
-    "spike on a saddle": lambda r: (Solid((PYRAMID.placed(_yaw(r) @ np.diag([0.2, 0.2, 1.0]), np.zeros(3)),)), SADDLE),
-    "block in a V": lambda r: (Solid((BLOCK.placed(turn([0, 1, 0], np.pi / 4), np.array([0.5 * 2**-0.5, 0.0, 0.5 * 2**-0.5])),)), VEE),
+    "spike on a saddle": lambda r: (Solid((THORN,)).placed(turn(YAW, r.uniform(-0.9, 0.9))), SADDLE),
+    "block in a V": lambda r: (Solid((BLOCK.placed(turn([0, 1, 0], np.pi / 4), np.array([-0.5, 0, 0.5]) * 2**-0.5),)), VEE),
     "step over an edge": lambda r: (L_PART, Solid((cuboid([-0.9, -0.6, -0.9], [0, 0.7, 0]),))),
-    "step on a step": lambda r: (L_PART, heap({(0, 0, 0), (1, 0, 0), (0, 0, 1)}, 0.4, (-1, -0.4, -1))),
+    "step on a step": lambda r: (L_PART, heap({(0, 0, 0), (1, 0, 0), (0, 0, 1)}, 0.4, (-1, -0.4, -2))),
 }
 
 
@@ -138,8 +139,7 @@ def test_first_order_is_what_moving_the_solids_shows(kind: str) -> None:
     seen: Counter = Counter()
     for seed in range(12):
         seen += judge(kind, seed, 20)
-    assert seen["entered"] >= 20
-    assert seen["free"] >= 20
+    assert min(seen["entered"], seen["free"]) >= 10
     assert seen["tie"] <= 0.1 * seen.total()
 
 
