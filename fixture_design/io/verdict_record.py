@@ -98,6 +98,7 @@ def _cone(cone: PolyhedralConvexCone) -> Data:
 
 def _contact(contact: Contact) -> Data:
     provenance = contact.provenance
+    linked = {} if contact.linked is None else {"linked": contact.linked}
     return {
         "name": contact.name,
         "role": contact.role,
@@ -107,7 +108,7 @@ def _contact(contact: Contact) -> Data:
         "feature": contact.feature,
         "friction": plain_numbers(contact.friction),
         "provenance": {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)},
-    }
+    } | linked
 
 
 def _run(verdict: Verdict) -> Data:

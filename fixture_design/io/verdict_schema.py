@@ -112,6 +112,7 @@ class FoundContactRecord(Record):
     feature: str | None
     friction: Number
     provenance: ProvenanceRecord
+    linked: str | None = Field(None, description="the other end of a segment on which convex edges touch")
 
 
 class RequirementRecord(Record):

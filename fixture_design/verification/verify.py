@@ -39,6 +39,7 @@ from fixture_design.layout import (
 )
 from fixture_design.tolerances import DEFAULT, Tolerances
 from fixture_design.verification.checker import sum_up
+from fixture_design.verification.linked import bracketed
 from fixture_design.version import VERSION
 
 #: The questions this version answers about every group, in the order they are reported.
@@ -129,6 +130,9 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
         return GroupVerdict(group.name, names, {question: Finding(None) for question in QUESTIONS})
     restraint = Restraint.of(group.contacts, report, tolerances)
     findings = {name: question(restraint) for name, question in QUESTIONS.items()}
+    if any(contact.linked in names for contact in group.contacts):
+        findings = bracketed(findings, group.contacts, report, tolerances, QUESTIONS)
+        notes.append(f"{group.name}: edges touch along parallel edges; the sets listed are those of their ends, too large")
     notes += [f"{group.name}: {name} is undecided: {f.reason}" for name, f in findings.items() if f.reason]
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:
