@@ -52,7 +52,8 @@ def contacts_of_bodies(
         try:
             contacts, its_notes = contacts_of_body(body, layout.part, geometry, layout.friction, layout.surface_gap)
         except InputError as error:
-            error.place = error.place or f"body {body.name!r}"
+            if not isinstance(error, PenetrationError):
+                error.place = error.place or f"body {body.name!r}"
             raise
         found += contacts
         notes += its_notes
@@ -67,7 +68,7 @@ def contacts_of_body(
     mine, theirs = Features(geometry), Features(placed)
     _check_room(body, part, mine, theirs, surface_gap)
     touches = touches_between(mine, theirs, surface_gap)
-    notes = tuple(f"body {body.name!r}: {note}" for note in placed.notes)
+    notes = tuple(f"body {body.name!r}: {note}" for note in placed.read_notes)
     if not touches:
         distance = format_length(nearest_distance(mine, theirs))
         return (), (*notes, f"body {body.name!r} does not touch the part: it is {distance} away")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from fixture_design.contacts.polyhedral import polyhedral_clauses
 from fixture_design.geometry.local import LocalSurface, local_surface
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.shapes import Vector3
-from fixture_design.tolerances import COPLANAR_ANGLE
+from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +59,9 @@ class Tangents:
         if not clauses:
             return None
         provenance = mine.provenance if _all_of(clauses, mine) else _worse(mine.provenance, theirs.provenance)
+        if provenance.normal_error <= DEFAULT.zero:
+            # what placing the body has rounded; every tie covers that
+            provenance = replace(provenance, normal_error=0.0)
         return Touch(point, other, clauses, (mine.feature, theirs.feature), provenance)
 
     def _local(self, side: str, geometry: PartGeometry, point: Vector3) -> LocalSurface:
