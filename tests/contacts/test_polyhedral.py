@@ -83,12 +83,12 @@ def test_random_cones_against_points_of_both(space: int) -> None:
 
 
 def _pieces(rng: np.random.Generator, up: np.ndarray) -> list[list[np.ndarray]]:
-    """One to three convex cones around a direction, each of a few half-spaces that contain it."""
+    """One to three simplicial cones around a direction, now and then without one of their facets."""
     pieces = []
     for _ in range(rng.integers(1, 4)):
-        normals = rng.normal(size=(rng.integers(1, 5), len(up))) - len(up) ** 2 * unit(up)
-        inside = unit(up) + 0.1 * rng.normal(size=len(up))
-        pieces.append([normal if normal @ inside < 0 else -normal for normal in normals])
+        spans = unit(up) + 0.7 * rng.normal(size=(len(up), len(up)))
+        facets = list(-np.linalg.inv(spans).T)
+        pieces.append(facets[1:] if rng.random() < 0.3 else facets)
     return pieces
 
 
