@@ -21,6 +21,7 @@ from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.patches import essential
 from fixture_design.geometry.penetration import deepest
 from fixture_design.geometry.polygon import Polygon
+from fixture_design.geometry.round_meeting import round_on_flat, round_on_round, sharp_on_round
 from fixture_design.geometry.touch import Tangents, Touch
 from fixture_design.layout import Body, Layout, Part, Pose
 from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF
@@ -102,6 +103,7 @@ def touches_between(part: Features, body: Features, gap: float) -> tuple[Touch, 
     touches: list[Touch] = []
     for start, other_start in zip(segments.part, segments.body, strict=True):
         touches += _along(tangents, start, other_start)
+    touches += _round_touches(tangents, part, body, gap)
     for beside in (False, True):
         # what only passes by within the gap counts where nothing else is
         settled = np.array([touch.point for touch in touches]).reshape(-1, 3)
@@ -111,6 +113,15 @@ def touches_between(part: Features, body: Features, gap: float) -> tuple[Touch, 
             touch = tangents.touch(point, other)
             touches += [touch] if touch else []
     return essential(touches, gap, blur)
+
+
+def _round_touches(tangents: Tangents, part: Features, body: Features, gap: float) -> list[Touch]:
+    """The contacts of round surfaces, of either side."""
+    found = [tangents.at_round(place, True) for place in round_on_round(part, body, gap)]
+    for mine, theirs, mine_is_part in ((part, body, True), (body, part, False)):
+        found += [tangents.at_round(place, mine_is_part) for place in round_on_flat(mine, theirs, gap)]
+        found += [tangents.at_round(place, mine_is_part, sharp=True) for place in sharp_on_round(mine, theirs, gap)]
+    return [touch for touch in found if touch is not None]
 
 
 def _along(tangents: Tangents, mine: np.ndarray, theirs: np.ndarray) -> list[Touch]:

@@ -48,6 +48,22 @@ class Features:
         """The ends of all edges of the mesh that are not inside a facet, seams too [m]."""
         return self.geometry.vertices[self._edges(seams=True)]
 
+    @cached_property
+    def _round_vertices(self) -> Indices:
+        """The vertices of round surfaces."""
+        surface = smooth_surface_numbers(self.geometry)[self.geometry.facet_of_triangle]
+        return np.unique(self.geometry.triangles[surface >= 0])
+
+    @property
+    def sharp_points(self) -> Directions:
+        """The vertices that are on no round surface [m]."""
+        return self.geometry.vertices[np.setdiff1d(self.vertices, self._round_vertices)]
+
+    @property
+    def sharp_edges(self) -> EdgeEnds:
+        """The edges that are on no round surface [m]."""
+        return self.edges[~np.isin(self.edge_vertices, self._round_vertices).all(axis=1)]
+
     @property
     def corners(self) -> Corners:
         """The corners of the triangles [m]."""
@@ -72,5 +88,9 @@ class Features:
 
 
 def smooth_surface_numbers(geometry: PartGeometry) -> Indices:
-    """For every facet the number of the smooth surface that it stands for, -1 for plane ones."""
-    return np.full(len(geometry.facets), -1, dtype=np.int64)
+    """For every facet the number of the round surface that it stands for, -1 for plane ones."""
+    numbers = np.full(len(geometry.facets), -1, dtype=np.int64)
+    for number, surface in enumerate(geometry.smooth_surfaces):
+        facets = [facet for facet in surface.facets.tolist() if geometry.surface_of_facet(facet) is surface]
+        numbers[facets] = number
+    return numbers

@@ -105,23 +105,32 @@ def _patch(touches: Sequence[Touch], blur: float) -> _Patch:
 
 
 def _hull(points: _InPlane, blur: float) -> Indices:
-    """The corners of the convex hull, counter-clockwise; points within ``blur`` of the rest of it are none.
+    """The corners of the convex hull, counter-clockwise; points within ``blur`` of the hull of the rest are none."""
+    import shapely
 
-    A. M. Andrew's monotone chain: both halves, from left to right and back.
-    """
-    order = np.lexsort(points.T[::-1])
-    halves = []
-    for sequence in (order, order[::-1]):
-        chain: list[int] = []
-        for index in sequence.tolist():
-            while len(chain) >= 2 and _left_of(points[chain[-1]], points[chain[-2]], points[index]) >= -blur:
-                chain.pop()
-            if len(chain) == 1 and np.linalg.norm(points[chain[0]] - points[index]) <= blur:
-                continue
-            chain.append(index)
-        halves.append(chain)
-    corners = halves[0][:-1] + halves[1][:-1] if len(halves[0]) > 1 else halves[0]
+    outline = shapely.MultiPoint(points).convex_hull
+    ring = list(shapely.get_coordinates(outline))
+    if outline.geom_type == "Polygon":
+        ring = shapely.get_coordinates(shapely.orient_polygons(outline))[:-1].tolist()
+    corners = [int(np.linalg.norm(points - corner, axis=1).argmin()) for corner in ring]
+    place = 0
+    # each corner is looked at again where one of its neighbours went
+    while len(corners) > 1 and place < len(corners):
+        before, after = points[corners[place - 1]], points[corners[(place + 1) % len(corners)]]
+        if _off_segment(points[corners[place]], before, after) <= blur:
+            del corners[place]
+            place = max(place - 1, 0)
+        else:
+            place += 1
     return np.array(corners, dtype=np.int64)
+
+
+def _off_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
+    """Distance of a point from a segment [m]."""
+    along = end - start
+    size = float(along @ along)
+    share = min(max(float((point - start) @ along) / size, 0.0), 1.0) if size > 0 else 0.0
+    return float(np.linalg.norm(point - start - share * along))
 
 
 def _left_of(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:

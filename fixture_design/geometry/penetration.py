@@ -1,7 +1,8 @@
 """How deep two solids are in each other, by their true surfaces: vertices inside, and edges that pierce faces.
 
 Where two polyhedra overlap, an edge of one pierces a face of the other, or one lies wholly inside the other. So depth is
-looked for at vertices and along the pieces into which piercings cut the edges.
+looked for at vertices and along the pieces into which piercings cut the edges. Facets that stand for round surfaces may
+cut into each other where the surfaces themselves only touch.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ import numpy as np
 from fixture_design.geometry.broad import box_pairs, boxes_of
 from fixture_design.geometry.depth import DepthField
 from fixture_design.geometry.features import EdgeEnds, Features
+from fixture_design.geometry.local import facets_at
+from fixture_design.geometry.nearest import touched_triangles
+from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.shapes import Corners, Directions, Vector3
 
 #: Where on a piece of an edge its depth is measured, between 0 and 1.
@@ -38,10 +42,22 @@ def deepest(part: Features, body: Features, gap: float) -> Penetration | None:
         if not len(places):
             continue
         depths = DepthField(theirs.geometry).at(places)
-        index = int(np.argmax(depths))
-        if depths[index] > max(gap, worst.depth if worst else 0.0):
-            worst = Penetration(float(depths[index]), places[index], number)
+        for index in np.argsort(-depths, kind="stable").tolist():
+            if depths[index] <= max(gap, worst.depth if worst else 0.0):
+                break
+            place = places[index]
+            if depths[index] > gap + bulge(theirs.geometry, place) + bulge(mine.geometry, place):
+                worst = Penetration(float(depths[index]), place, number)
+                break
     return worst
+
+
+def bulge(geometry: PartGeometry, point: Vector3) -> float:
+    """How far the true surface nearest to a point may be from the facets that stand for it [m]; 0 for plane facets."""
+    _, nearest = geometry.surface.at(point)
+    facets = facets_at(geometry, touched_triangles(geometry, nearest, geometry.on_edge))
+    surfaces = [geometry.surface_of_facet(facet) for facet in facets.tolist()]
+    return max((surface.sagitta + surface.error for surface in surfaces if surface is not None), default=0.0)
 
 
 def pierced_pieces(edges: EdgeEnds, corners: Corners) -> Directions:

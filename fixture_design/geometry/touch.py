@@ -11,8 +11,12 @@ from fixture_design.contacts import Clause, Provenance, unit_normal
 from fixture_design.contacts.polyhedral import polyhedral_clauses
 from fixture_design.geometry.local import LocalSurface, local_surface
 from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.round_meeting import RoundPlace
 from fixture_design.geometry.shapes import Vector3
 from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
+
+#: Sine up to which a normal is that of a round surface there: points are off it by what its facets are [-].
+_SAME_ROUND = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +60,9 @@ class Tangents:
         mine, theirs = self._local("part", self.part, point), self._local("body", self.body, other)
         theirs_snapped = _snapped(theirs, mine)
         clauses = polyhedral_clauses(mine.clauses, theirs_snapped, COPLANAR_ANGLE)
+        round_sides = (_round_normals(self.part, mine, point), _round_normals(self.body, theirs, other))
+        # between two round surfaces contact is along lines or all around, not at the vertices that stand for them
+        clauses = tuple(c for c in clauses or () if not all(_among(c, side) for side in round_sides))
         if not clauses:
             return None
         provenance = mine.provenance if _all_of(clauses, mine) else _worse(mine.provenance, theirs.provenance)
@@ -64,11 +71,44 @@ class Tangents:
             provenance = replace(provenance, normal_error=0.0)
         return Touch(point, other, clauses, (mine.feature, theirs.feature), provenance)
 
+    def at_round(self, place: RoundPlace, mine_is_round: bool, sharp: bool = False) -> Touch | None:
+        """The contact of a round surface with a flat or round one, or (``sharp``) with an edge or vertex.
+
+        Args:
+            mine_is_round: the first point of the place is the part's; else it is the body's.
+        """
+        point, other = (place.point, place.other) if mine_is_round else (place.other, place.point)
+        normal = place.normal if mine_is_round else -place.normal
+        names = (place.name, place.other_name) if mine_is_round else (place.other_name, place.name)
+        clauses: tuple[Clause, ...] | None = ((normal,),)
+        if sharp:
+            side, geometry = ("part", self.part) if mine_is_round else ("body", self.body)
+            local = self._local(side, geometry, place.point)
+            pieces, half = local.clauses, [[-place.normal]]
+            clauses = polyhedral_clauses(*((pieces, half) if mine_is_round else (half, pieces)), COPLANAR_ANGLE)
+            names = (local.feature, names[1]) if mine_is_round else (names[0], local.feature)
+        if not clauses:
+            return None
+        error = place.error if place.error > DEFAULT.zero else 0.0
+        return Touch(point, other, clauses, names, Provenance("fitted", error))
+
     def _local(self, side: str, geometry: PartGeometry, point: Vector3) -> LocalSurface:
         key = (side, np.round(point / geometry.on_edge).tobytes())
         if key not in self._known:
             self._known[key] = local_surface(geometry, point)
         return self._known[key]
+
+
+def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) -> list[Vector3]:
+    """The normals of the cylinders and balls that meet at a point."""
+    surfaces = (geometry.surface_of_facet(facet) for facet in local.facets)
+    return [s.normal(point) for s in surfaces if s is not None and s.kind in ("cylinder", "sphere")]
+
+
+def _among(clause: Clause, normals: list[Vector3]) -> bool:
+    """Whether all normals of a clause are among some unit normals, either way round."""
+    sines = [min((np.linalg.norm(np.cross(unit_normal(n), other)) for other in normals), default=1.0) for n in clause]
+    return max(sines) <= _SAME_ROUND
 
 
 def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
