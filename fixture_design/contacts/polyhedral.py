@@ -1,8 +1,8 @@
 """General polyhedral contact: which motions of a contact point two solids that touch there admit, as an AND of ORs.
 
-Let C1 (the moving part) and C2 (a fixed body) be the tangent cones at the contact point, each a union of convex pieces
-C1a, C2b. A displacement v of the contact point carries C1 to v + C1, which enters C2 if and only if v = x2 - x1 for some
-x1 inside C1 and x2 inside C2:
+Let C1 (the moving part) and C2 (a fixed body) be the tangent cones at the contact point, each a union of convex
+pieces C1a, C2b. A displacement v of the contact point carries C1 to v + C1, which enters C2 if and only if v = x2 - x1
+for some x1 inside C1 and x2 inside C2:
 
     v is admissible to first order  <=>  for every pair of pieces, v is not in the interior of C2b - C1a.
 
@@ -11,9 +11,9 @@ some j: a clause with the alternatives n_j = -m_j, which point out of the part a
 convex edge (an OR), apex in a concave edge (an AND), edge across edge (the cross product of the edges) and edge on face
 all follow. Beyond the thesis, which has points on facets, edges and apices (2.2.1).
 
-Pieces may overlap or be disjoint as long as their interiors make up the interior of the solid's cone up to walls between
-them; where the other side has no volume (a point, a line) they must overlap, so that no wall is left out: at a concave
-edge the two half-spaces, not a cut along one of them, which would let the tip slide along the cut into the material.
+Pieces may overlap or be disjoint as long as their interiors make up the interior of the solid's cone up to walls
+between them; where the other side has no volume (a point, a line) they must overlap, so that no wall is left out: at a
+concave edge the two half-spaces, not a cut along one of them, which would let the tip slide along it into the material.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float
 
+from fixture_design.arrays import Weights
 from fixture_design.geometry.broad import box_pairs, boxes_of
 from fixture_design.geometry.features import EdgeEnds, Features
 
@@ -25,9 +25,11 @@ def nearest_distance(part: Features, body: Features) -> float:
     return float(min(best, between.min(initial=np.inf)))
 
 
-def _between(first: EdgeEnds, second: EdgeEnds) -> Float[np.ndarray, "e"]:
-    """Distance between the lines of edges where their common perpendicular meets both; infinite elsewhere (there the
-    nearest point is a vertex)."""
+def _between(first: EdgeEnds, second: EdgeEnds) -> Weights:
+    """Distance between edges where their common perpendicular meets both, shape (e,) [m].
+
+    Infinite elsewhere: there the nearest point of one of them is a vertex.
+    """
     along, along_2 = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
     normals = np.cross(along, along_2)
     sizes = np.einsum("nj,nj->n", normals, normals)

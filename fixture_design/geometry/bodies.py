@@ -30,9 +30,7 @@ from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF
 MOST_PLACES = 20_000
 
 
-def contacts_of_bodies(
-    layout: Layout, geometry: PartGeometry | Polygon
-) -> tuple[tuple[Contact, ...], tuple[str, ...]]:
+def contacts_of_bodies(layout: Layout, geometry: PartGeometry | Polygon) -> tuple[tuple[Contact, ...], tuple[str, ...]]:
     """All contacts of a layout's bodies with its part, in W, body after body, and notes about them.
 
     A body's contacts are called BODY#1, BODY#2, ... in the order of their coordinates, and have its role and friction.
@@ -200,7 +198,11 @@ def _twin_name(touches: Sequence[Touch], index: int, names: dict[int, str]) -> s
     if twin is None:
         return None
     for other, touch in enumerate(touches):
-        same = touch.twin is not None and np.array_equal(touch.point, twin) and np.array_equal(touch.twin, touches[index].point)
+        same = (
+            touch.twin is not None
+            and np.array_equal(touch.point, twin)
+            and np.array_equal(touch.twin, touches[index].point)
+        )
         if same and matching(touch.clauses[0], touches[index].clauses[0], COPLANAR_ANGLE):
             return names[other]
     raise AssertionError("an end of a segment without the other one")

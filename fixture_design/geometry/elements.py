@@ -48,7 +48,9 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     """
     part = layout.part
     if part is None:
-        raise InputError("there are elements or bodies but no part for them to touch", source=layout.source, expected="part: ...")
+        raise InputError(
+            "there are elements or bodies but no part for them to touch", source=layout.source, expected="part: ..."
+        )
     if (part.kind == "polygon") != (layout.space == "planar"):
         problem = f"part {part.name!r} does not fit a {layout.space} layout"
         raise InputError(problem, source=layout.source, found=f"kind {part.kind!r}")

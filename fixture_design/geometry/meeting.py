@@ -2,8 +2,8 @@
 
 The contact set of two polyhedra is made of polygons, segments and points, and its corners are of three kinds: a vertex
 of one on a triangle of the other, the same the other way round, and an edge across an edge. What holds inside a polygon
-or along a segment with one normal holds if it holds at the corners. Segments on which two edges run along each other may
-have alternatives, so they are found as segments.
+or along a segment with one normal holds if it holds at the corners. Segments on which two edges run along each other
+may have alternatives, so they are found as segments.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
 
+from fixture_design.arrays import Mask
 from fixture_design.geometry.broad import box_pairs, boxes_of
 from fixture_design.geometry.features import EdgeEnds, Features
 from fixture_design.geometry.shapes import Corners, Directions
@@ -28,7 +28,7 @@ class PointPairs:
 
     part: Directions
     body: Directions
-    beside: Bool[np.ndarray, "n"]
+    beside: Mask
 
     def swapped(self) -> PointPairs:
         return PointPairs(self.body, self.part, self.beside)
@@ -75,7 +75,7 @@ def vertices_on_triangles(points: Directions, corners: Corners, gap: float, blur
     return PointPairs(near_points[near], feet[near], ~above[near])
 
 
-def _on_planes(points: Directions, corners: Corners, blur: float) -> tuple[Directions, Bool[np.ndarray, "n"]]:
+def _on_planes(points: Directions, corners: Corners, blur: float) -> tuple[Directions, Mask]:
     """The feet of points on the planes of triangles, and whether they lie in the triangles, shape (n, 3) and (n,)."""
     sides = np.roll(corners, -1, axis=1) - corners
     normals = np.cross(sides[:, 0], sides[:, 1])

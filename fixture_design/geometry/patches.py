@@ -1,8 +1,8 @@
 """Only what is needed: of all places of contact, those that do not follow from others.
 
-A normal that is excluded at some points of a plane is excluded in their convex hull, since n . v is linear in the point.
-So of the places with one normal in one plane the corners of the hull stay: for a face on a face those of the overlap.
-An OR follows wherever one of its normals is excluded anyway.
+A normal that is excluded at some points of a plane is excluded in their convex hull, since n . v is linear in the
+point. So of the places with one normal in one plane the corners of the hull stay: for a face on a face those of the
+overlap. An OR follows wherever one of its normals is excluded anyway.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fixture_design.arrays import Indices
 from fixture_design.contacts import Clause, unit_normal
 from fixture_design.contacts.friction import tangents
 from fixture_design.contacts.polyhedral import matching
-from fixture_design.geometry.shapes import Directions, Vector3
+from fixture_design.geometry.shapes import Vector3
 from fixture_design.geometry.touch import Touch
 from fixture_design.tolerances import COPLANAR_ANGLE
 

@@ -1,8 +1,8 @@
 """How deep two solids are in each other, by their true surfaces: vertices inside, and edges that pierce faces.
 
-Where two polyhedra overlap, an edge of one pierces a face of the other, or one lies wholly inside the other. So depth is
-looked for at vertices and along the pieces into which piercings cut the edges. Facets that stand for round surfaces may
-cut into each other where the surfaces themselves only touch.
+Where two polyhedra overlap, an edge of one pierces a face of the other, or one lies wholly inside the other. So depth
+is looked for at vertices and along the pieces into which piercings cut the edges. Facets that stand for round surfaces
+may cut into each other where the surfaces themselves only touch.
 """
 
 from __future__ import annotations

@@ -67,9 +67,11 @@ def round_on_round(mine: Features, theirs: Features, gap: float) -> Iterator[Rou
     """
     for surface in mine.geometry.smooth_surfaces:
         for other in theirs.geometry.smooth_surfaces:
-            if surface.hollow and other.hollow or not {surface.kind, other.kind} <= {"cylinder", "sphere"}:
+            if (surface.hollow and other.hollow) or not {surface.kind, other.kind} <= {"cylinder", "sphere"}:
                 continue
-            yield from _on_round(surface, _round_sheet(mine, surface, gap), other, _round_sheet(theirs, other, gap), gap)
+            yield from _on_round(
+                surface, _round_sheet(mine, surface, gap), other, _round_sheet(theirs, other, gap), gap
+            )
 
 
 def sharp_on_round(mine: Features, theirs: Features, gap: float) -> Iterator[RoundPlace]:
@@ -112,9 +114,7 @@ def _plane_facets(features: Features) -> list[int]:
     return [facet for facet in range(count) if features.geometry.surface_of_facet(facet) is None]
 
 
-def _on_plane(
-    surface: SmoothSurface, sheet: Sheet, theirs: Features, facet: int, gap: float
-) -> Iterator[RoundPlace]:
+def _on_plane(surface: SmoothSurface, sheet: Sheet, theirs: Features, facet: int, gap: float) -> Iterator[RoundPlace]:
     """A convex round surface on a plane facet: the point or the two ends of the line where it touches the plane."""
     plane = theirs.geometry.facets[facet]
     up = plane.normal / np.linalg.norm(plane.normal)
@@ -157,9 +157,7 @@ def _lowest(surface: SmoothSurface, up: Vector3) -> tuple[Vector3, Vector3 | Non
             return surface.point - surface.ring * across / size - surface.radius * up, None
 
 
-def _ends(
-    sheet: Sheet, other: Sheet, point: Vector3, along: Vector3 | None, normal: Vector3
-) -> list[Vector3]:
+def _ends(sheet: Sheet, other: Sheet, point: Vector3, along: Vector3 | None, normal: Vector3) -> list[Vector3]:
     """The point, or the ends of the stretches of the line, where both faces are."""
     if along is None:
         return [point] if sheet.covers(point, normal) and other.covers(point, normal) else []

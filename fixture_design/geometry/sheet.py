@@ -37,8 +37,8 @@ class Sheet:
         """Where a line is on the face, seen along the normal: lengths from ``point`` along the unit ``along``.
 
         Args:
-            normal: of the true face there, on either side, square to ``along``; triangles that are further from the line
-                than the reach, or steeper than 45 degrees to the face, do not count.
+            normal: of the true face there, on either side, square to ``along``; triangles that are further from the
+                line than the reach, or steeper than 45 degrees to the face, do not count.
         """
         across = np.cross(normal, along)
         away = self.corners - point
@@ -56,7 +56,9 @@ class Sheet:
             low, high = w[k - 1], w[k]
             if low * high < 0 and min(abs(low), abs(high)) > self.blur:
                 share = low / (low - high)
-                places.append((float(u[k - 1] + share * (u[k] - u[k - 1])), float(h[k - 1] + share * (h[k] - h[k - 1]))))
+                places.append(
+                    (float(u[k - 1] + share * (u[k] - u[k - 1])), float(h[k - 1] + share * (h[k] - h[k - 1])))
+                )
         if not places or max(abs(height) for _, height in places) > self.reach:
             return None
         return min(place for place, _ in places), max(place for place, _ in places)

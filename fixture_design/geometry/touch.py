@@ -15,6 +15,8 @@ from fixture_design.geometry.round_meeting import RoundPlace
 from fixture_design.geometry.shapes import Vector3
 from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
 
+#: Kinds of provenance, from the best to the worst.
+_DOUBT = ("exact", "fitted", "approximate")
 #: Sine up to which a normal is that of a round surface there: points are off it by what its facets are [-].
 _SAME_ROUND = 1e-3
 
@@ -108,7 +110,7 @@ def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) 
 def _among(clause: Clause, normals: list[Vector3]) -> bool:
     """Whether all normals of a clause are among some unit normals, either way round."""
     sines = [min((np.linalg.norm(np.cross(unit_normal(n), other)) for other in normals), default=1.0) for n in clause]
-    return max(sines) <= _SAME_ROUND
+    return bool(max(sines) <= _SAME_ROUND)
 
 
 def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
@@ -118,8 +120,8 @@ def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
 
 
 def _worse(first: Provenance, second: Provenance) -> Provenance:
-    kind = next((kind for kind in ("approximate", "fitted") if kind in {first.kind, second.kind}), "exact")
-    return Provenance(kind, max(first.normal_error, second.normal_error))
+    doubtful = max((first, second), key=lambda provenance: _DOUBT.index(provenance.kind))
+    return replace(doubtful, normal_error=max(first.normal_error, second.normal_error))
 
 
 def _snapped(surface: LocalSurface, other: LocalSurface) -> tuple[tuple[Point, ...], ...]:

@@ -98,8 +98,8 @@ def _cone(cone: PolyhedralConvexCone) -> Data:
 
 def _contact(contact: Contact) -> Data:
     provenance = contact.provenance
-    linked = {} if contact.linked is None else {"linked": contact.linked}
-    return {
+    linked: Data = {} if contact.linked is None else {"linked": contact.linked}
+    found: Data = {
         "name": contact.name,
         "role": contact.role,
         "point": plain_numbers(contact.point),
@@ -108,7 +108,8 @@ def _contact(contact: Contact) -> Data:
         "feature": contact.feature,
         "friction": plain_numbers(contact.friction),
         "provenance": {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)},
-    } | linked
+    }
+    return found | linked
 
 
 def _run(verdict: Verdict) -> Data:

@@ -6,7 +6,7 @@ from point to point. That is no AND of ORs of the end points. Two sets of motion
     outer   at each end any alternative               the contacts as they stand
     inner   the same alternative at both ends         then also at every point between, by linearity
 
-What closes the outer set closes the true one, and so does a motion of the inner set belong to it. Where neither settles a
+What closes the outer set closes the true one, and a motion of the inner set belongs to it. Where neither settles a
 question, it is undecided.
 """
 
@@ -36,7 +36,11 @@ _WHY = "convex edges touch along parallel convex edges: {} if every point of the
 
 
 def bracketed(
-    outer: Findings, contacts: Sequence[Contact], report: Scale, tolerances: Tolerances, questions: Mapping[str, Question]
+    outer: Findings,
+    contacts: Sequence[Contact],
+    report: Scale,
+    tolerances: Tolerances,
+    questions: Mapping[str, Question],
 ) -> dict[str, Finding]:
     """Findings about contacts of which some are linked: those of the outer set where these stand for the true set.
 

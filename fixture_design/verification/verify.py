@@ -132,7 +132,9 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
     findings = {name: question(restraint) for name, question in QUESTIONS.items()}
     if any(contact.linked in names for contact in group.contacts):
         findings = bracketed(findings, group.contacts, report, tolerances, QUESTIONS)
-        notes.append(f"{group.name}: edges touch along parallel edges; the sets listed are those of their ends, too large")
+        notes.append(
+            f"{group.name}: edges touch along parallel edges; the sets listed are those of their ends, too large"
+        )
     notes += [f"{group.name}: {name} is undecided: {f.reason}" for name, f in findings.items() if f.reason]
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:

@@ -60,7 +60,7 @@ def test_nearly_parallel_faces_are_parallel_only_if_told_so() -> None:
 
 @pytest.mark.parametrize("space", [2, 3])
 def test_random_cones_against_points_of_both(space: int) -> None:
-    """v enters if x1 + v = x2 for some x1 inside the part's cone, x2 inside the body's: sought by linear programming."""
+    """v enters if x1 + v = x2 for some x1 inside the part's cone and x2 inside the body's: by linear programming."""
     from scipy.optimize import linprog
 
     rng = np.random.default_rng(space)

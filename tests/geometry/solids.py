@@ -1,4 +1,4 @@
-"""Solids as unions of convex pieces, and whether two of them overlap after a motion: by separating axes, not by cones."""
+"""Solids as unions of convex pieces, and whether two overlap after a motion: by separating axes, not by cones."""
 
 from __future__ import annotations
 
@@ -112,5 +112,3 @@ def _depth(first: Convex, second: Convex) -> float:
     axes = np.vstack([first.normals, second.normals, across])
     ours, theirs = first.vertices @ axes.T, second.vertices @ axes.T
     return float(min((ours.max(axis=0) - theirs.min(axis=0)).min(), (theirs.max(axis=0) - ours.min(axis=0)).min()))
-
-

@@ -32,7 +32,11 @@ CORNER = Solid((*NOTCH.pieces, cuboid([0, -1, 0], [1, 0, 1])))
 SADDLE = heap({(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1)}, 0.7, (-1, -1, -1))
 THORN = Convex.hull([[0, 0, 0], [0.5, 0.2, 0.4], [0.2, 0.5, 0.4], [0.4, 0.4, 0.7]])
 L_PART = heap({(0, 0, 0), (1, 0, 0), (0, 0, 1)}, 0.4, (-1, -0.5, -1)).placed(turn([0, 1, 0], np.pi))
-VEE = Solid((bar([[0, 0], [1, 1], [1.2, 1], [1.2, -0.4], [0, -0.4]], 0.8), bar([[0, 0], [-1, 1], [-1.2, 1], [-1.2, -0.4], [0, -0.4]], 0.8)))
+SIDE = [[0, 0], [1, 1], [1.2, 1], [1.2, -0.4], [0, -0.4]]
+VEE = Solid((bar(SIDE, 0.8), bar([[-x, z] for x, z in SIDE], 0.8)))
+NEEDLE = Convex.hull([[0, 0, 0], [1, 0.3, 0.2], [0.2, 1, 0.3], [0.3, 0.2, 1]])
+STAND = Solid((cuboid([-0.2, -0.1, -1], [0.1, 0.3, 0]),))
+TILTED = BLOCK.placed(turn([0, 1, 0], np.pi / 4), np.array([-0.5, 0, 0.5]) * 2**-0.5)
 YAW = np.array([0, 0, 1.0])
 
 
@@ -51,7 +55,7 @@ def _shift(rng: np.random.Generator, *spans: float) -> np.ndarray:
 #: Each kind of meeting: a part and a body that touch, drawn at random.
 KINDS = {
     "face on face": lambda r: (Solid((BLOCK,)).placed(_yaw(r), _shift(r, 0.8, 0.8, 0)), FLOOR),
-    "face on smaller face": lambda r: (Solid((BLOCK,)).placed(_yaw(r)), Solid((cuboid([-0.2, -0.1, -1], [0.1, 0.3, 0]),))),
+    "face on smaller face": lambda r: (Solid((BLOCK,)).placed(_yaw(r)), STAND),
     "flush blocks": lambda r: (Solid((BLOCK,)), Solid((cuboid([-0.5, -0.4, -0.6], [0.5, 0.4, 0]),))),
     "edge on face": lambda r: (Solid((WEDGE,)).placed(_yaw(r), _shift(r, 1, 1, 0)), FLOOR),
     "apex on face": lambda r: (Solid((PYRAMID,)).placed(_yaw(r)), FLOOR),
@@ -64,10 +68,10 @@ KINDS = {
     "block in a notch": lambda r: (Solid((cuboid([0, -0.3, 0], [0.4, 0.4, 0.5]),)), NOTCH),
     "apex in a notch": lambda r: (Solid((PYRAMID.placed(turn([0, 1, 0], 0.75), np.zeros(3)),)), NOTCH),
     "block in a corner": lambda r: (Solid((cuboid([0, 0, 0], [0.4, 0.3, 0.5]),)), CORNER),
-    "spike in a corner": lambda r: (Solid((Convex.hull([[0, 0, 0], [1, 0.3, 0.2], [0.2, 1, 0.3], [0.3, 0.2, 1]]),)), CORNER),
+    "spike in a corner": lambda r: (Solid((NEEDLE,)), CORNER),
     "face on a saddle": lambda r: (Solid((BLOCK.placed(_yaw(r), np.array([0, 0, 0.7])),)), SADDLE),
     "spike on a saddle": lambda r: (Solid((THORN,)).placed(turn(YAW, r.uniform(-0.9, 0.9))), SADDLE),
-    "block in a V": lambda r: (Solid((BLOCK.placed(turn([0, 1, 0], np.pi / 4), np.array([-0.5, 0, 0.5]) * 2**-0.5),)), VEE),
+    "block in a V": lambda r: (Solid((TILTED,)).placed(np.eye(3), _shift(r, 0, 0.3, 0)), VEE),
     "step over an edge": lambda r: (L_PART, Solid((cuboid([-0.9, -0.6, -0.9], [0, 0.7, 0]),))),
     "step on a step": lambda r: (L_PART, heap({(0, 0, 0), (1, 0, 0), (0, 0, 1)}, 0.4, (-1, -0.4, -2))),
 }
@@ -90,7 +94,8 @@ def _rate(touches: tuple[Touch, ...], motion: np.ndarray) -> tuple[float, float]
 def _motions(rng: np.random.Generator, touches: tuple[Touch, ...], count: int) -> np.ndarray:
     """Random motions, half of them pulled towards what all clauses admit."""
     motions = rng.normal(size=(count, 6))
-    for motion in motions[::2]:
+    for index in range(0, count, 2):
+        motion = motions[index]
         for _ in range(60):
             worst, row = -np.inf, None
             for touch in touches:
@@ -101,7 +106,7 @@ def _motions(rng: np.random.Generator, touches: tuple[Touch, ...], count: int) -
                         worst, row = min(rates), rows[int(np.argmin(rates))]
             if worst < 0.02 or row is None:
                 break
-            motion -= (worst + 0.05) * row / (row @ row)
+            motion = motions[index] = motion - (worst + 0.05) * row / (row @ row)
     return motions / np.linalg.norm(motions, axis=1, keepdims=True)
 
 
@@ -137,8 +142,8 @@ def judge(kind: str, seed: int, motions: int) -> Counter:
 @pytest.mark.parametrize("kind", KINDS)
 def test_first_order_is_what_moving_the_solids_shows(kind: str) -> None:
     seen: Counter = Counter()
-    for seed in range(12):
-        seen += judge(kind, seed, 20)
+    for seed in range(10):
+        seen += judge(kind, seed, 24)
     assert min(seen["entered"], seen["free"]) >= 10
     assert seen["tie"] <= 0.1 * seen.total()
 
