@@ -158,7 +158,7 @@ def _check_room(body: Body, part: Part, mine: Features, theirs: Features, gap: f
     raise PenetrationError(
         body.name,
         found.depth,
-        place,
+        place.tolist(),
         f"{nearest_feature(inside.geometry, found.point)} of {names[0]!r}",
         f"{nearest_feature(outside.geometry, found.point)} of {names[1]!r}",
         gap,

@@ -9,12 +9,15 @@ import numpy as np
 from fixture_design.arrays import Point
 from fixture_design.contacts import Clause, Provenance, unit_normal
 from fixture_design.contacts.polyhedral import polyhedral_clauses
-from fixture_design.geometry.local import LocalSurface, local_surface
+from fixture_design.geometry.local import LocalSurface, facets_at, local_surface
+from fixture_design.geometry.nearest import touched_triangles
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.round_meeting import RoundPlace
 from fixture_design.geometry.shapes import Vector3
 from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
 
+#: How far off a wall it is looked for material, in widths of an edge [-].
+_STEP_OFF = 10.0
 #: Kinds of provenance, from the best to the worst.
 _DOUBT = ("exact", "fitted", "approximate")
 #: Sine up to which a normal is that of a round surface there: points are off it by what its facets are [-].
@@ -59,6 +62,8 @@ class Tangents:
         Overlapping cones within the gap come from features that pass each other there; real penetration is measured
         elsewhere (`penetration`).
         """
+        if _is_buried(self.part, point) or _is_buried(self.body, other):
+            return None
         mine, theirs = self._local("part", self.part, point), self._local("body", self.body, other)
         theirs_snapped = _snapped(theirs, mine)
         clauses = polyhedral_clauses(mine.clauses, theirs_snapped, COPLANAR_ANGLE)
@@ -99,6 +104,16 @@ class Tangents:
         if key not in self._known:
             self._known[key] = local_surface(geometry, point)
         return self._known[key]
+
+
+def _is_buried(geometry: PartGeometry, point: Vector3) -> bool:
+    """Whether a point is on a wall between solids that touch or overlap, with material on both sides."""
+    if geometry.is_one_shell:
+        return False
+    facets = facets_at(geometry, touched_triangles(geometry, point, geometry.on_edge))
+    normals = np.array([unit_normal(geometry.facets[facet].normal) for facet in facets.tolist()]).reshape(-1, 3)
+    steps = _STEP_OFF * geometry.on_edge * normals
+    return bool(len(facets)) and bool(geometry.inside(np.vstack([point + steps, point - steps])).all())
 
 
 def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) -> list[Vector3]:

@@ -230,11 +230,10 @@ def test_a_body_that_does_not_touch_is_noted_with_its_distance(tmp_path: Path, c
     found = contacts_of_elements(layout_of(cube, body(far)))
     assert found.contacts == ()
     assert found.notes == ("body 'far' does not touch the part: it is 2.3 mm away",)
-    # between edges, where no vertex is near
-    bar = boxes(tmp_path, "bar", ([-0.05, -0.01, 0.021], [0.05, 0.01, 0.03]))
-    turned = Pose.from_xyz_rpy([0, 0.03, 0], [np.pi / 4, 0, 0])
-    (note,) = contacts_of_elements(layout_of(cube, body(bar, turned))).notes
-    assert "does not touch" in note
+    # an edge over a face: between edges, no vertex is as near
+    bar = boxes(tmp_path, "bar", ([-0.05, -0.01, -0.01], [0.05, 0.01, 0.01]))
+    (note,) = contacts_of_elements(layout_of(cube, body(bar, Pose.from_xyz_rpy([0, 0, 0.04], [np.pi / 4, 0, 0])))).notes
+    assert note == "body 'bar' does not touch the part: it is 5.86 mm away"
 
 
 @pytest.mark.parametrize(
@@ -262,7 +261,8 @@ def test_hulls_are_not_taken_for_the_bodies(tmp_path: Path, cube: Part) -> None:
     assert "does not touch" in note
 
 
-def test_faults_name_the_body(tmp_path: Path, cube: Part) -> None:
-    with pytest.raises(GeometryError, match="body 'open'"):
-        vertices, triangles = box(0.01, 0.01, 0.01)
-        contacts(layout_of(cube, body(meshed(tmp_path, "open", (vertices, triangles[:-1])))))
+def test_faults_name_the_file(tmp_path: Path, cube: Part) -> None:
+    vertices, triangles = box(0.01, 0.01, 0.01)
+    layout = layout_of(cube, body(meshed(tmp_path, "open", (vertices, triangles[:-1]))))
+    with pytest.raises(GeometryError, match=r"open.urdf.*not closed"):
+        contacts(layout)
