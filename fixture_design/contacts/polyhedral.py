@@ -38,7 +38,7 @@ _EXACT = Tolerances(tie=1e-9, band=1.0)
 
 
 def polyhedral_clauses(
-    moving: Sequence[Piece], fixed: Sequence[Piece], parallel: float = _EXACT.tie
+    moving: Sequence[Piece], fixed: Sequence[Piece], parallel: float = _EXACT.tie, *, pass_by: bool = False
 ) -> tuple[Clause, ...] | None:
     """The clauses of a contact between two polyhedral cones, redundant ones left out.
 
@@ -47,6 +47,7 @@ def polyhedral_clauses(
     Args:
         moving, fixed: convex pieces C1a of the part and C2b of the body, each by its outward normals; in R2 or R3.
         parallel: sines up to this are zeros: edges in faces and along edges, facets on facets [-].
+        pass_by: pieces that overlap already only pass each other within a gap: they give no clause.
 
     Returns:
         the AND of ORs; its normals are the part's own where a facet of the part makes the facet, else the body's,
@@ -67,6 +68,8 @@ def polyhedral_clauses(
             if len(cone.equalities):
                 continue
             if not len(cone.faces):
+                if pass_by:
+                    continue
                 return None
             clause = tuple(_given(-facet, piece, other, parallel) for facet in cone.faces)
             differences.append((cone, clause))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -57,16 +58,16 @@ class Tangents:
         self._known: dict[tuple[str, bytes], LocalSurface] = {}
 
     def touch(self, point: Vector3, other: Vector3) -> Touch | None:
-        """The contact at a pair of points; None where nothing is excluded, or the cones overlap already.
+        """The contact at a pair of points; None where nothing is excluded.
 
-        Overlapping cones within the gap come from features that pass each other there; real penetration is measured
-        elsewhere (`penetration`).
+        Cones that overlap already are of features that pass each other within the gap: penetration beyond it was
+        looked for before (`penetration`).
         """
         if _is_buried(self.part, point) or _is_buried(self.body, other):
             return None
         mine, theirs = self._local("part", self.part, point), self._local("body", self.body, other)
         theirs_snapped = _snapped(theirs, mine)
-        clauses = polyhedral_clauses(mine.clauses, theirs_snapped, COPLANAR_ANGLE)
+        clauses = polyhedral_clauses(mine.clauses, theirs_snapped, COPLANAR_ANGLE, pass_by=True)
         round_sides = (_round_normals(self.part, mine, point), _round_normals(self.body, theirs, other))
         # between two round surfaces contact is along lines or all around, not at the vertices that stand for them
         clauses = tuple(c for c in clauses or () if not all(_among(c, side) for side in round_sides))
@@ -111,9 +112,11 @@ def _is_buried(geometry: PartGeometry, point: Vector3) -> bool:
     if geometry.is_one_shell:
         return False
     facets = facets_at(geometry, touched_triangles(geometry, point, geometry.on_edge))
-    normals = np.array([unit_normal(geometry.facets[facet].normal) for facet in facets.tolist()]).reshape(-1, 3)
-    steps = _STEP_OFF * geometry.on_edge * normals
-    return bool(len(facets)) and bool(geometry.inside(np.vstack([point + steps, point - steps])).all())
+    normals = [unit_normal(geometry.facets[facet].normal) for facet in facets.tolist()]
+    # out of a concave corner lead only directions between its normals
+    outward = [sum(chosen, np.zeros(3)) for size in (3, 2, 1) for chosen in combinations(normals, size)]
+    steps = (_STEP_OFF * geometry.on_edge * unit_normal(way) for way in outward if np.linalg.norm(way) > _SAME_ROUND)
+    return bool(normals) and all(geometry.inside((point + step)[None])[0] for step in steps)
 
 
 def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) -> list[Vector3]:

@@ -102,3 +102,8 @@ def _depth(linprog: object, piece: list, other: list, velocity: np.ndarray) -> f
     bounds = [(-1e3, 1e3)] * len(velocity) + [(-10.0, 1.0)]
     found = linprog(cost, A_ub=rows, b_ub=limits, bounds=bounds)  # type: ignore[operator]
     return float(found.x[-1])
+
+
+def test_pieces_that_pass_by_give_no_clause() -> None:
+    clauses = polyhedral_clauses([[X, -Z]], [[Z], [Y]], pass_by=True)
+    assert _rounded(clauses or ()) == _rounded([[-Z]])

