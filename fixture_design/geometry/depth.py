@@ -6,8 +6,7 @@ import numpy as np
 
 from fixture_design.geometry.distance import DistanceField
 from fixture_design.geometry.part import PartGeometry
-from fixture_design.geometry.piece import volume
-from fixture_design.geometry.shapes import Directions, PerVertex
+from fixture_design.geometry.shapes import Directions, PerVertex, Triangles, Vertices
 
 
 class DepthField:
@@ -27,10 +26,17 @@ class DepthField:
 
 def _fields(geometry: PartGeometry) -> list[DistanceField]:
     shells = [geometry.triangles[geometry.shell_of_triangle == k] for k in range(geometry.shell_of_triangle.max() + 1)]
-    if any(volume(geometry.vertices, shell) < 0 for shell in shells):
+    if any(_volume(geometry.vertices, shell) < 0 for shell in shells):
         return [geometry.surface]
     fields = []
     for shell in shells:
         used, triangles = np.unique(shell, return_inverse=True)
         fields.append(DistanceField(geometry.vertices[used], triangles.reshape(-1, 3), geometry.name))
     return fields
+
+
+def _volume(vertices: Vertices, triangles: Triangles) -> float:
+    """Signed volume of a closed shell [m^3]: negative if it bounds a cavity."""
+    middle = vertices[triangles.ravel()].mean(axis=0)
+    first, second, third = (vertices[triangles[:, corner]] - middle for corner in range(3))
+    return float(np.einsum("ij,ij->", first, np.cross(second, third))) / 6
