@@ -20,6 +20,7 @@ from fixture_design.geometry.nearest import touched_triangles
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.patches import essential
 from fixture_design.geometry.penetration import deepest
+from fixture_design.geometry.piece import SmoothPatch
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.geometry.round_meeting import round_on_flat, round_on_round, sharp_on_round
 from fixture_design.geometry.touch import Tangents, Touch
@@ -82,11 +83,17 @@ def placed_geometry(body: Body, X_WP: Pose) -> PartGeometry:
     translation = X_PW.points(body.pose.translation[None])[0]
     if np.array_equal(rotation, np.eye(3)) and not translation.any():
         return geometry
-    vertices = Pose(read_only(rotation), read_only(translation)).points(geometry.vertices)
+    X_PB = Pose(read_only(rotation), read_only(translation))
+    vertices = X_PB.points(geometry.vertices)
     # a product of rotations leaves 1e-17 where it should leave nothing
     vertices = np.where(np.abs(vertices) <= 4 * ROUND_OFF * geometry.half_diagonal, 0.0, vertices)
     rounding = geometry.rounding + 4 * ROUND_OFF * np.abs(vertices).max(axis=1)
-    return replace(geometry, vertices=read_only(vertices), rounding=read_only(rounding))
+    given = tuple(_placed_patch(patch, X_PB) for patch in geometry.given)
+    return replace(geometry, vertices=read_only(vertices), rounding=read_only(rounding), given=given)
+
+
+def _placed_patch(patch: SmoothPatch, X_PB: Pose) -> SmoothPatch:
+    return replace(patch, point=X_PB.points(patch.point[None])[0], axis=X_PB.vectors(patch.axis[None])[0])
 
 
 def touches_between(part: Features, body: Features, gap: float) -> tuple[Touch, ...]:

@@ -268,3 +268,10 @@ def test_faults_name_the_file(tmp_path: Path, cube: Part) -> None:
     layout = layout_of(cube, body(meshed(tmp_path, "open", (vertices, triangles[:-1]))))
     with pytest.raises(GeometryError, match=r"open.urdf.*not closed"):
         contacts(layout)
+
+
+def test_dowel_given_as_a_cylinder_touches_along_its_exact_line(tmp_path: Path, cube: Part) -> None:
+    dowel = urdf(tmp_path, "dowel", '<geometry><cylinder radius="0.005" length="0.03"/></geometry>')
+    found = contacts(layout_of(cube, body(dowel, Pose.from_xyz_rpy([-0.025, 0.004, 0.01], [0, 0, 0.3]))))
+    np.testing.assert_allclose([c.point for c in found], [[-0.02, 0.004, -0.005], [-0.02, 0.004, 0.02]], atol=1e-9)
+    assert normals(found) == {(-1.0, 0.0, 0.0)}
