@@ -6,7 +6,7 @@ else escapes is a fault of the toolkit (exit code 4).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
@@ -130,6 +130,22 @@ class OffSurfaceError(GeometryError):
         super().__init__(
             f"element {element!r} is {format_length(abs(distance))} {side} {part!r}; nearest: {feature}; "
             f"move it there, or raise `surface_gap` ({format_length(gap)})"
+        )
+
+
+class PenetrationError(GeometryError):
+    """A fixture body is inside the part, deeper than counts as touching.
+
+    Attributes:
+        body: its name.  depth: the largest one found [m].  point: where, in W [m].
+    """
+
+    def __init__(self, body: str, depth: float, point: Sequence[float], inner: str, outer: str, gap: float) -> None:
+        self.body, self.depth, self.point = body, depth, tuple(float(x) for x in point)
+        place = ", ".join(f"{round(x, 6) + 0.0:g}" for x in self.point)
+        super().__init__(
+            f"body {body!r} and the part overlap by {format_length(depth)} at [{place}] m: {inner} is inside {outer}; "
+            f"move the body, or raise `surface_gap` ({format_length(gap)})"
         )
 
 

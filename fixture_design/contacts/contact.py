@@ -59,6 +59,7 @@ class Contact:
         torsion: of a soft tip in space, c >= 0 [m]: with friction mu it also carries moments about the normal, up to
             mu c a newton (`limit_surface`).
         clearance: of a pin in its hole [m]: it touches at nominal, but does not keep the part in while it is open.
+        linked: for one end of a segment on which a convex edge touches a parallel one, the contact at its other end.
 
     Raises:
         ContactError: no normal, zero or non-finite normal, non-finite or absurdly far point, negative friction, torsion
@@ -80,6 +81,7 @@ class Contact:
     feature: str | None = None
     torsion: float = 0.0
     clearance: float = 0.0
+    linked: str | None = None
 
     def __post_init__(self) -> None:
         point = read_only(self.point)

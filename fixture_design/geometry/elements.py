@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
-from fixture_design.errors import InputError, UnsupportedError, looking_at
+from fixture_design.errors import InputError, looking_at
+from fixture_design.geometry.bodies import contacts_of_bodies
 from fixture_design.geometry.contact import contacts_of_element, polygon_contacts
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
@@ -19,8 +20,8 @@ class GeometryContacts:
     """What geometry has to say about a layout.
 
     Attributes:
-        contacts: of the elements, in their order.
-        notes: about the part, for people.
+        contacts: of the elements in their order, then of the bodies.
+        notes: about the part and the bodies, for people.
         box_center: centre of the part's bounding box (taken in its own frame P), in W [m].
         half_diagonal: of that box [m]: the length that makes margins dimensionless, however the part is placed.
     """
@@ -37,24 +38,18 @@ def load_geometry(part: Part) -> PartGeometry | Polygon:
 
 
 def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None = None) -> GeometryContacts:
-    """The contacts of a layout's elements with its part.
+    """The contacts of a layout's elements and bodies with its part.
 
     Args:
         geometry: of ``layout.part``, where it is loaded already; a batch of layouts loads its part once.
 
     Raises:
         InputError: elements without a part; a part that does not fit the layout's space; see `contacts_of_element`.
-        UnsupportedError: the layout has bodies.
     """
-    if layout.bodies:
-        names = ", ".join(repr(body.name) for body in layout.bodies)
-        raise UnsupportedError(
-            f"this version does not evaluate bodies ({names})", source=layout.source, expected="elements or contacts"
-        )
     part = layout.part
     if part is None:
         place = layout.places.get(("elements", layout.elements[0].name)) if layout.elements else None
-        problem = "there are elements but no part for them to touch"
+        problem = "there are elements or bodies but no part for them to touch"
         raise InputError(problem, source=layout.source, place=place, expected="part: ...")
     if (part.kind == "polygon") != (layout.space == "planar"):
         problem = f"part {part.name!r} does not fit a {layout.space} layout"
@@ -62,8 +57,10 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     with looking_at(layout.source, layout.places.get(("part",))):
         geometry = geometry or load_geometry(part)
     contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, geometry))
+    with looking_at(layout.source, layout.places.get(("bodies",))):
+        of_bodies, notes = contacts_of_bodies(layout, geometry)
     center = part.pose.points(geometry.box_center[None])[0]
-    return GeometryContacts(contacts, geometry.notes, center, geometry.half_diagonal)
+    return GeometryContacts((*contacts, *of_bodies), (*geometry.notes, *notes), center, geometry.half_diagonal)
 
 
 def _contacts(element: Element, layout: Layout, part: Part, geometry: PartGeometry | Polygon) -> tuple[Contact, ...]:

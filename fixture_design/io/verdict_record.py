@@ -110,9 +110,10 @@ def _contact(contact: Contact) -> Data:
         "friction": plain_numbers(contact.friction),
         "provenance": {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)},
     }
-    # keys of soft tips and pins alone
+    # keys of soft tips, pins and edges alone
     lengths = {"torsion": contact.torsion, "clearance": contact.clearance}
-    return data | {key: plain_numbers(length) for key, length in lengths.items() if length}
+    linked: Data = {} if contact.linked is None else {"linked": contact.linked}
+    return data | {key: plain_numbers(length) for key, length in lengths.items() if length} | linked
 
 
 def _run(verdict: Verdict) -> Data:

@@ -140,6 +140,7 @@ class FoundContactRecord(Record):
     torsion: Number = Field(0.0, description="of soft tips: moment about the normal a newton and unit of friction [m]")
     clearance: Number = Field(0.0, description="of pins; contacts with clearance do not count for accessibility [m]")
     provenance: ProvenanceRecord
+    linked: str | None = Field(None, description="the other end of a segment on which convex edges touch")
 
 
 class RequirementRecord(Record):

@@ -39,6 +39,7 @@ from fixture_design.layout import (
 )
 from fixture_design.tolerances import DEFAULT, Tolerances
 from fixture_design.verification.checker import sum_up
+from fixture_design.verification.linked import bracketed
 from fixture_design.version import VERSION
 
 #: The questions this version answers about every group, in the order they are reported.
@@ -144,6 +145,11 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
         return GroupVerdict(group.name, names, {question: Finding(None) for question in QUESTIONS})
     restraint = Restraint.of(group.contacts, report, tolerances)
     findings = {name: question(restraint) for name, question in QUESTIONS.items()}
+    if any(contact.linked in names for contact in group.contacts):
+        findings = bracketed(findings, group.contacts, report, tolerances, QUESTIONS)
+        notes.append(
+            f"{group.name}: edges touch along parallel edges; the sets listed are those of their ends, too large"
+        )
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:
         notes.append(f"{group.name}: too many contacts or alternatives for the margin of {', '.join(unmeasured)}")

@@ -57,9 +57,10 @@ def test_what_is_refused(layout: Layout, tmp_path: Path) -> None:
         contacts_of_elements(replace(layout, part=None))
     with pytest.raises(InputError, match="does not fit a planar layout"):
         contacts_of_elements(replace(layout, space="planar"))
-    body = Body("vee", "locator", tmp_path / "v.urdf", POSE)
-    with pytest.raises(UnsupportedError, match="'vee'"):
-        contacts_of_elements(replace(layout, bodies=(body,)))
+    square = polygon_part([[0, 0], [2, 0], [2, 2], [0, 2]])
+    planar = Layout("p", "planar", square, bodies=(Body("vee", "locator", tmp_path / "v.urdf", POSE),))
+    with pytest.raises(UnsupportedError, match=r"'vee'.*no planar form"):
+        contacts_of_elements(planar)
     with pytest.raises(OffSurfaceError, match="'A'"):
         contacts_of_elements(replace(layout, part=replace(layout.part, pose=Pose.identity(3))))
 

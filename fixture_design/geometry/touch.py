@@ -1,0 +1,158 @@
+"""One place of contact between two solids: the tangent cones there, and the clauses that follow from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from fixture_design.arrays import Point
+from fixture_design.contacts import Clause, Provenance, unit_normal
+from fixture_design.contacts.polyhedral import polyhedral_clauses
+from fixture_design.geometry.local import LocalSurface, facets_at, local_surface
+from fixture_design.geometry.nearest import touched_triangles
+from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.round_meeting import RoundPlace
+from fixture_design.geometry.shapes import Vector3
+from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
+
+#: How far off a wall it is looked for material, in widths of an edge [-].
+_STEP_OFF = 10.0
+#: Kinds of provenance, from the best to the worst.
+_DOUBT = ("exact", "fitted", "approximate")
+#: Sine up to which a normal is that of a round surface there: points are off it by what its facets are [-].
+_SAME_ROUND = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A place of contact, in the part's frame P.
+
+    Attributes:
+        point: of the part, shape (3,) [m].  other: of the body, within the gap [m].
+        clauses: AND of ORs of normals out of the part, into the body.
+        features: what touches what there: of the part, of the body.
+        provenance: of the normals, the worst of both sides.
+        twin: for an end of a segment with alternatives, the point of its other end; else None.
+    """
+
+    point: Vector3
+    other: Vector3
+    clauses: tuple[Clause, ...]
+    features: tuple[str, str]
+    provenance: Provenance
+    twin: Vector3 | None = None
+
+    @property
+    def distance(self) -> float:
+        """Gap along the first normal, negative where the solids overlap [m]."""
+        return float((self.other - self.point) @ unit_normal(self.clauses[0][0]))
+
+
+class Tangents:
+    """The local surfaces of a part and a body, each looked at once; the body in the part's frame."""
+
+    def __init__(self, part: PartGeometry, body: PartGeometry) -> None:
+        self.part, self.body = part, body
+        self._known: dict[tuple[str, bytes], LocalSurface] = {}
+
+    def touch(self, point: Vector3, other: Vector3) -> Touch | None:
+        """The contact at a pair of points; None where nothing is excluded.
+
+        Cones that overlap already are of features that pass each other within the gap: penetration beyond it was
+        looked for before (`penetration`).
+        """
+        if _is_buried(self.part, point) or _is_buried(self.body, other):
+            return None
+        mine, theirs = self._local("part", self.part, point), self._local("body", self.body, other)
+        theirs_snapped = _snapped(theirs, mine)
+        clauses = polyhedral_clauses(mine.clauses, theirs_snapped, COPLANAR_ANGLE, pass_by=True)
+        round_sides = (_round_normals(self.part, mine, point), _round_normals(self.body, theirs, other))
+        # between two round surfaces contact is along lines or all around, not at the vertices that stand for them
+        clauses = tuple(c for c in clauses or () if not all(_among(c, side) for side in round_sides))
+        if not clauses:
+            return None
+        provenance = mine.provenance if _all_of(clauses, mine) else _worse(mine.provenance, theirs.provenance)
+        if provenance.normal_error <= DEFAULT.zero:
+            # what placing the body has rounded; every tie covers that
+            provenance = replace(provenance, normal_error=0.0)
+        return Touch(point, other, clauses, (mine.feature, theirs.feature), provenance)
+
+    def at_round(self, place: RoundPlace, mine_is_round: bool, sharp: bool = False) -> Touch | None:
+        """The contact of a round surface with a flat or round one, or (``sharp``) with an edge or vertex.
+
+        Args:
+            mine_is_round: the first point of the place is the part's; else it is the body's.
+        """
+        point, other = (place.point, place.other) if mine_is_round else (place.other, place.point)
+        normal = place.normal if mine_is_round else -place.normal
+        names = (place.name, place.other_name) if mine_is_round else (place.other_name, place.name)
+        clauses: tuple[Clause, ...] | None = ((normal,),)
+        if sharp:
+            side, geometry = ("part", self.part) if mine_is_round else ("body", self.body)
+            local = self._local(side, geometry, place.point)
+            pieces, half = local.clauses, [[-place.normal]]
+            clauses = polyhedral_clauses(*((pieces, half) if mine_is_round else (half, pieces)), COPLANAR_ANGLE)
+            names = (local.feature, names[1]) if mine_is_round else (names[0], local.feature)
+        if not clauses:
+            return None
+        error = place.error if place.error > DEFAULT.zero else 0.0
+        return Touch(point, other, clauses, names, Provenance("fitted", error))
+
+    def _local(self, side: str, geometry: PartGeometry, point: Vector3) -> LocalSurface:
+        key = (side, np.round(point / geometry.on_edge).tobytes())
+        if key not in self._known:
+            self._known[key] = local_surface(geometry, point)
+        return self._known[key]
+
+
+def _is_buried(geometry: PartGeometry, point: Vector3) -> bool:
+    """Whether a point is on a wall between solids that touch or overlap, with material on both sides."""
+    if geometry.is_one_shell:
+        return False
+    facets = facets_at(geometry, touched_triangles(geometry, point, geometry.on_edge))
+    normals = [unit_normal(geometry.facets[facet].normal) for facet in facets.tolist()]
+    # out of a concave corner lead only directions between its normals
+    outward = [sum(chosen, np.zeros(3)) for size in (3, 2, 1) for chosen in combinations(normals, size)]
+    steps = (_STEP_OFF * geometry.on_edge * unit_normal(way) for way in outward if np.linalg.norm(way) > _SAME_ROUND)
+    return bool(normals) and all(geometry.inside((point + step)[None])[0] for step in steps)
+
+
+def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) -> list[Vector3]:
+    """The normals of the cylinders and balls that meet at a point."""
+    surfaces = (geometry.surface_of_facet(facet) for facet in local.facets)
+    return [s.normal(point) for s in surfaces if s is not None and s.kind in ("cylinder", "sphere")]
+
+
+def _among(clause: Clause, normals: list[Vector3]) -> bool:
+    """Whether all normals of a clause are among some unit normals, either way round."""
+    sines = [min((np.linalg.norm(np.cross(unit_normal(n), other)) for other in normals), default=1.0) for n in clause]
+    return bool(max(sines) <= _SAME_ROUND)
+
+
+def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
+    """Whether all normals are the surface's own: then those of the other side, and their errors, play no part."""
+    own = {id(normal) for clause in surface.clauses for normal in clause}
+    return all(id(normal) in own for clause in clauses for normal in clause)
+
+
+def _worse(first: Provenance, second: Provenance) -> Provenance:
+    doubtful = max((first, second), key=lambda provenance: _DOUBT.index(provenance.kind))
+    return replace(doubtful, normal_error=max(first.normal_error, second.normal_error))
+
+
+def _snapped(surface: LocalSurface, other: LocalSurface) -> tuple[tuple[Point, ...], ...]:
+    """The pieces of one side, its normals turned to be opposed to those of the other side where they nearly are.
+
+    Faces that lie on each other are parallel, however the pose was rounded.
+    """
+    within = COPLANAR_ANGLE + surface.provenance.normal_error + other.provenance.normal_error
+    opposed = [-normal for clause in other.clauses for normal in clause]
+
+    def turned(normal: Point) -> Point:
+        off = [float(np.linalg.norm(unit_normal(normal) - unit_normal(candidate))) for candidate in opposed]
+        best = int(np.argmin(off))
+        return opposed[best] if off[best] <= within else normal
+
+    return tuple(tuple(turned(normal) for normal in clause) for clause in surface.clauses)
