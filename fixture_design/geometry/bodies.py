@@ -10,7 +10,7 @@ import numpy as np
 from fixture_design.arrays import read_only
 from fixture_design.contacts import Contact
 from fixture_design.contacts.polyhedral import matching
-from fixture_design.errors import InputError, PenetrationError, UnsupportedError, format_length
+from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
 from fixture_design.geometry.apart import nearest_distance
 from fixture_design.geometry.features import Features
 from fixture_design.geometry.load import load_part
@@ -49,12 +49,8 @@ def contacts_of_bodies(layout: Layout, geometry: PartGeometry | Polygon) -> tupl
         if layout.part is None or isinstance(geometry, Polygon):
             text = f"body {body.name!r}: bodies are URDF, which has no planar form"
             raise UnsupportedError(text, source=layout.source, expected="`contacts` or `elements` in planar layouts")
-        try:
+        with looking_at(layout.source, layout.places.get(("bodies", body.name))):
             contacts, its_notes = contacts_of_body(body, layout.part, geometry, layout.friction, layout.surface_gap)
-        except InputError as error:
-            if not isinstance(error, PenetrationError):
-                error.place = error.place or f"body {body.name!r}"
-            raise
         found += contacts
         notes += its_notes
     return tuple(found), tuple(notes)

@@ -57,8 +57,7 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     with looking_at(layout.source, layout.places.get(("part",))):
         geometry = geometry or load_geometry(part)
     contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, geometry))
-    with looking_at(layout.source, layout.places.get(("bodies",))):
-        of_bodies, notes = contacts_of_bodies(layout, geometry)
+    of_bodies, notes = contacts_of_bodies(layout, geometry)
     center = part.pose.points(geometry.box_center[None])[0]
     return GeometryContacts((*contacts, *of_bodies), (*geometry.notes, *notes), center, geometry.half_diagonal)
 

@@ -13,7 +13,7 @@ from fixture_design.geometry.piece import Piece
 from fixture_design.geometry.repeats import without_repeats
 from fixture_design.geometry.shapes import EdgeEnds, Vertices
 from fixture_design.geometry.winding import without_sheets, wound_outward
-from fixture_design.tolerances import MERGE_VERTICES, PLAUSIBLE_SIZE
+from fixture_design.tolerances import FARTHEST, MERGE_VERTICES, PLAUSIBLE_SIZE, SMALLEST_PART
 
 #: What every part must be.
 _CLOSED = "a closed triangle mesh"
@@ -29,8 +29,8 @@ def sound(piece: Piece) -> Piece:
     Edges where solids touch, with four triangles or more, stay: they are what the shape is like.
 
     Raises:
-        GeometryError: no triangles, vertices that are not finite or do not exist, all in one plane, surface not closed,
-            neighbours wound against each other.
+        GeometryError: no triangles, vertices that are not finite or do not exist, too far away, too near each other,
+            all in one plane, surface not closed, neighbours wound against each other.
     """
     _check_numbers(piece)
     mended = without_cracks(without_repeats(merged(piece)))
@@ -63,11 +63,21 @@ def _check_numbers(piece: Piece) -> None:
         )
     if piece.triangles.min() < 0 or piece.triangles.max() >= len(piece.vertices):
         raise piece.error("a triangle refers to a vertex that does not exist")
-    # a mesh in one plane is closed at best as a sheet folded on itself, and has no inside
     corners = piece.vertices[piece.triangles.ravel()]
+    _check_bounds(piece, corners)
+    # a mesh in one plane is closed at best as a sheet folded on itself, and has no inside
     extents = np.linalg.svd(corners - corners.mean(axis=0), compute_uv=False)
     if extents[2] <= MERGE_VERTICES * extents[0]:
         raise piece.error("the mesh is flat: all its vertices lie in one plane", expected="a solid")
+
+
+def _check_bounds(piece: Piece, corners: Vertices) -> None:
+    """Squares of numbers far outside of these overflow, or are zero."""
+    longest, farthest = float(np.ptp(corners, axis=0).max()), float(np.abs(corners).max())
+    if farthest > FARTHEST:
+        raise piece.error("the shape reaches too far", f"{farthest:g} m", f"at most {FARTHEST:g} m")
+    if 0 < longest < SMALLEST_PART:
+        raise piece.error("the shape is too small", f"{longest:g} m", f"at least {SMALLEST_PART:g} m")
 
 
 def _check_closed(piece: Piece) -> None:

@@ -50,6 +50,26 @@ def test_numbers_near_the_largest_there_are() -> None:
         check_scale(vertices * 1.7e308, 1.0, Path("part.obj"))
 
 
+@pytest.mark.parametrize(
+    ("shape", "origin", "words"),
+    [
+        ('<box size="1e300 1 1"/>', "0 0 0", ["reaches too far", "found 5e+299 m", "at most 1e+09 m"]),
+        ('<box size="1e-300 1e-300 1e-300"/>', "0 0 0", ["too small", "found 1e-300 m", "at least 1e-09 m"]),
+        ('<sphere radius="1e300"/>', "0 0 0", ["reaches too far"]),
+        ('<cylinder radius="1" length="1e12"/>', "0 0 0", ["reaches too far"]),
+        ('<box size="1 1 1"/>', "1e300 0 0", ["reaches too far", "1e+300 m"]),
+    ],
+)
+def test_shapes_have_bounds_too(tmp_path: Path, shape: str, origin: str, words: list[str]) -> None:
+    file = tmp_path / "part.urdf"
+    inside = f'<origin xyz="{origin}"/><geometry>{shape}</geometry>'
+    file.write_text(f'<robot name="r"><link name="base"><collision>{inside}</collision></link></robot>')
+    with pytest.raises(GeometryError) as caught:
+        load_part(part(file))
+    for word in ["part.urdf: link 'base', collision: ", *words]:
+        assert word in str(caught.value)
+
+
 def test_other_faults_are_left_to_their_own_messages() -> None:
     for vertices in (np.zeros((0, 3)), np.zeros((4, 3)), np.full((4, 3), np.nan)):
         check_scale(vertices, 1e300, Path("part.obj"))

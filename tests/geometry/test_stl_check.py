@@ -84,7 +84,7 @@ def test_whole_files_pass(tmp_path: Path, content: bytes | str) -> None:
     file = tmp_path / "part.STL"
     file.write_bytes(content.encode() if isinstance(content, str) else content)
     assert stl_problem(file) is None
-    assert len(read_mesh(file)[1]) == 4
+    assert len(read_mesh(file).triangles) == 4
 
 
 def test_real_files_pass() -> None:
