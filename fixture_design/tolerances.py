@@ -47,6 +47,9 @@ RING_EQUAL = 1e-3
 #: well below the depth of a strip under it.
 ROUND_FIT = 1e-6
 
+#: Surfaces of one axis or direction, known to within their normal errors, agree within so many of these [-].
+SLIP_ERRORS = 4.0
+
 #: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
 FARTHEST = 1e9
 

@@ -20,7 +20,7 @@ from fixture_design.analysis.restraint import Restraint, motion_in_world
 from fixture_design.arrays import Rows, Vector, Weights
 from fixture_design.cones.kernel import singular_directions
 from fixture_design.contacts import Constraints, motion_scaled
-from fixture_design.layout import Answer, Finding, Singular
+from fixture_design.layout import Answer, Finding, Rule, Singular
 from fixture_design.tolerances import Tolerances
 
 #: Choices looked at before the rank is given up as undecided.
@@ -37,6 +37,8 @@ def deterministic(restraint: Restraint) -> Finding:
         reason. The margin is the d-th singular value in the report's scale, smallest over the branches, 0 with fewer
         rows than d; None if there are more than MAX_BRANCHES branches.
     """
+    if restraint.slip is not None:
+        return _slips(restraint, restraint.slip)
     constraints, rule = restraint.constraints, None
     search = _RankSearch.of(constraints, restraint.tolerances)
     outcome = search.visit()
@@ -62,6 +64,17 @@ def deterministic(restraint: Restraint) -> Finding:
     residual = float(np.abs(rows @ scaled).max() / np.linalg.norm(scaled))
     choice = restraint.choice(outcome.choice, constraints)
     return Finding(Answer.NO, margin, Singular(outcome.rank, motion, (choice,), residual, rule), residual)
+
+
+def _slips(restraint: Restraint, slip: Vector) -> Finding:
+    """No: a motion of all surfaces along themselves is noticed by no contact, up to the normals' errors."""
+    motion = motion_in_world(slip, restraint.constraints.scale)
+    scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)
+    residual = float(np.abs(restraint.reported.rows @ scaled).max() / np.linalg.norm(scaled))
+    values = singular_directions(restraint.constraints.rows)[0]
+    rank = min(int(np.sum(values > restraint.tolerances.tie)), len(values) - 1)
+    evidence = Singular(rank, motion, ((),), residual, Rule("common slip", ()))
+    return Finding(Answer.NO, 0.0, evidence, residual)
 
 
 def determinacy_margin(constraints: Constraints) -> float | None:

@@ -12,6 +12,7 @@ from fixture_design.analysis.branches import Leaf, Settled, UnionQuestions
 from fixture_design.analysis.counting import too_few_to_close
 from fixture_design.analysis.margin import closure_margin
 from fixture_design.analysis.normal_errors import blur, still_motion
+from fixture_design.analysis.slipping import common_slip
 from fixture_design.arrays import Points, Rows, Vector
 from fixture_design.contacts import (
     Constraints,
@@ -24,7 +25,7 @@ from fixture_design.contacts import (
     scale_of,
 )
 from fixture_design.errors import ContactError
-from fixture_design.layout import Evidence, Finding, Motion, Weights
+from fixture_design.layout import Evidence, Finding, Motion, Rule, Weights
 from fixture_design.layout.verdict import Answer
 from fixture_design.tolerances import DEFAULT, Tolerances
 
@@ -72,7 +73,11 @@ class Restraint:
     def closed(self) -> Settled:
         """Is every branch {o}? Asked once for form closure and accessibility."""
         settled = UnionQuestions(self.constraints, self.tolerances).closed()
-        if settled.truth is not None or not self.constraints.errors.any():
+        if settled.truth is False or not self.constraints.errors.any():
+            return settled
+        if self.slip is not None:
+            return Settled(False, motion=self.slip, rule=Rule("common slip", ()))
+        if settled.truth:
             return settled
         still, rule = still_motion(self.contacts, self.tolerances), too_few_to_close(self.contacts)
         if still is not None:
@@ -82,6 +87,11 @@ class Restraint:
             if nominal.truth is False:
                 return replace(nominal, rule=rule)
         return self.blamed(settled)
+
+    @cached_property
+    def slip(self) -> Vector | None:
+        """A motion of all touched surfaces along themselves; asked only where normals are off."""
+        return common_slip(self.contacts, self.tolerances) if self.constraints.errors.any() else None
 
     def blamed(self, settled: Settled) -> Settled:
         """An outcome whose reason, where it is undecided, names the normals that are off."""
@@ -106,8 +116,9 @@ class Restraint:
 
     @cached_property
     def margin(self) -> float | None:
-        """s of the normals, in the report's scale."""
-        return closure_margin(self.reported, self.tolerances)
+        """s of the normals, in the report's scale; what keeps a common slip from being a tie is their error."""
+        margin = closure_margin(self.reported, self.tolerances)
+        return margin if margin is None or self.slip is None else min(margin, 0.0)
 
     def finding(self, answer: Answer, settled: Settled, margin: float | None, *, full_rank: bool) -> Finding:
         """A finding about the normals, with its evidence; ``full_rank``: the weights need a basis for their claim."""

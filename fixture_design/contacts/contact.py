@@ -59,6 +59,8 @@ class Contact:
         torsion: of a soft tip in space, c >= 0 [m]: with friction mu it also carries moments about the normal, up to
             mu c a newton (`limit_surface`).
         clearance: of a pin in its hole [m]: it touches at nominal, but does not keep the part in while it is open.
+        slips: for each normal, clause after clause, the motions [v; w] about W's origin that move its surface along
+            itself, shape (k, 6), one to three of them; empty where they are not known.
         linked: for one end of a segment on which a convex edge touches a parallel one, the contact at its other end.
 
     Raises:
@@ -82,6 +84,7 @@ class Contact:
     torsion: float = 0.0
     clearance: float = 0.0
     linked: str | None = None
+    slips: tuple[np.ndarray, ...] = ()
 
     def __post_init__(self) -> None:
         point = read_only(self.point)

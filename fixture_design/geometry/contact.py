@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Point, Rows
 from fixture_design.contacts import Contact, torsion_of_patch
 from fixture_design.errors import DimensionError, GeometryError, InputError, OffSurfaceError, UnsupportedError
 from fixture_design.geometry.ball import ball_normal, check_room
@@ -119,7 +120,8 @@ def _contacts(
             distance, p_PC = surface.nearest(p_PA)
             if abs(distance) > gap:
                 raise OffSurfaceError(element.name, part_name, distance, surface.feature(p_PC), gap)
-            touches = _touches(element, surface, surface.local(p_PC), X_WP, p_PA, p_PC, gap)
+            local = surface.local(p_PC)
+            touches = [_with_slips(t, local) for t in _touches(element, surface, local, X_WP, p_PA, p_PC, gap)]
     except OffSurfaceError:
         raise
     except InputError as error:
@@ -139,9 +141,24 @@ def _contacts(
             touches[index].feature,
             touches[index].torsion,
             touches[index].clearance,
+            slips=tuple(moved_with(X_WP, slips) for slips in touches[index].slips),
         )
         for number, index in enumerate(order, start=1)
     )
+
+
+def _with_slips(touch: TipTouch, local: LocalSurface) -> TipTouch:
+    """The touch with the motions of the surfaces there, if its normals are theirs."""
+    mine = [normal for clause in touch.clauses for normal in clause]
+    theirs = [normal for clause in local.clauses for normal in clause]
+    same = len(mine) == len(theirs) and all(np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
+    return replace(touch, slips=local.slips) if same else touch
+
+
+def moved_with(X_WP: Pose, motions: Rows) -> Rows:
+    """Motions [v; w] about P's origin, one a row, about W's origin."""
+    turns = X_WP.vectors(motions[:, 3:])
+    return np.hstack([X_WP.vectors(motions[:, :3]) - np.cross(turns, X_WP.translation), turns])
 
 
 def _touches(

@@ -34,6 +34,8 @@ _FEWEST_ON = 4
 _MOST_NEIGHBOURS, _LARGEST_PATCH = 6, 40
 #: Seeds that may fail among facets that hang together smoothly, before the rest of them is given up.
 _MOST_FAILURES = 25
+#: Corners this many tolerances from the axis are at a cone's apex [-].
+_AT_APEX = 10.0
 #: Angle between a facet's normal and those of the surface at its corners, at most [rad]: half a coarse step.
 _STEP = 0.7 * SMOOTH_ANGLE
 #: A surface whose normals are known no better than this is not known [rad].
@@ -312,8 +314,8 @@ class _Search:
         out = shape.directions(corners)
         sense = np.where(shape.directions(self.middles[facets][:1])[0] @ self.units[facets[0]] < 0, -1.0, 1.0)
         facing = sense * np.einsum("ij,ij->i", out, self.units[facets][owner])
-        # at the apex of a cone there is no normal to compare with
-        facing = np.where(out.any(axis=1), facing, 1.0)
+        # at the apex of a cone there is no normal to compare with, and beside it noise
+        facing = np.where(shape.reaches(corners) > _AT_APEX * self.tolerance, facing, 1.0)
         return (fits & (np.minimum.reduceat(facing, starts) >= np.cos(_STEP))).tolist()
 
     def _hollow(self, shape: RoundShape, members: list[int]) -> bool:

@@ -71,10 +71,10 @@ class RoundShape:
         none = lengths <= _NO_NORMAL * np.hypot(across, along).max(initial=0.0)
         return np.where(none, 0.0, raw / np.where(none, 1.0, lengths))
 
-    def reach(self, point: Vector3) -> float:
-        """Distance of a point from the axis, of a sphere from the centre [m]."""
-        along, outward = self._split(point[None])
-        return float(np.hypot(np.linalg.norm(outward), along[0] if self.kind == "sphere" else 0.0))
+    def reaches(self, points: Directions) -> PerPoint:
+        """Distances of points from the axis, of a sphere from the centre [m]."""
+        along, outward = self._split(points)
+        return np.hypot(np.linalg.norm(outward, axis=1), along if self.kind == "sphere" else 0.0)
 
     def _split(self, points: Directions) -> tuple[PerPoint, Directions]:
         """How far along the axis, and the part of each point that is square to it."""
@@ -132,7 +132,7 @@ class SmoothSurface:
             UnsupportedError: a point on the axis, where there is none, or no further from it than facets are deep.
         """
         normal = self.shape.directions(p_PC[None])[0]
-        if not normal.any() or self.shape.reach(p_PC) <= self.sagitta:
+        if not normal.any() or self.shape.reaches(p_PC[None])[0] <= self.sagitta:
             raise UnsupportedError(f"{self.name} has no normal on its axis", expected="a point away from the axis")
         return -normal if self.hollow else normal
 

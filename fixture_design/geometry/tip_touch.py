@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Point, Rows
 from fixture_design.contacts import Provenance
 
 
 @dataclass(frozen=True, eq=False)
 class TipTouch:
-    """A point of the surface with the logic of the tip there, in the part's frame P; fields as `Contact` has them."""
+    """A point of the surface with the logic of the tip there, in the part's frame P; fields as in `Contact`."""
 
     point: Point
     clauses: tuple[tuple[Point, ...], ...]
@@ -18,3 +18,4 @@ class TipTouch:
     feature: str
     torsion: float = 0.0
     clearance: float = 0.0
+    slips: tuple[Rows, ...] = ()

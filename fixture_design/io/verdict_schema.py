@@ -42,11 +42,12 @@ class CountedRecord(Record):
 
 
 class RuleRecord(Record):
-    """Why the answer holds whatever the normals are: all contacts together have too few rows or normals.
+    """Why the answer holds whatever the normals are: too few rows or normals, or surfaces that the motion keeps.
 
     "few rows": fewer than d rows do not locate, d rows do not close; "few normals": p do not close; d = 6, p = 3 in
     space, d = 3, p = 2 in the plane. Contacts on one plane facet have one normal, and rows of 1 + the dimension of
-    their points' affine hull.
+    their points' affine hull. "common slip": the motion moves every touched surface along itself, up to the normals'
+    errors (`slips` of the contacts); nothing is counted.
     """
 
     name: RuleName
@@ -140,6 +141,9 @@ class FoundContactRecord(Record):
     torsion: Number = Field(0.0, description="of soft tips: moment about the normal a newton and unit of friction [m]")
     clearance: Number = Field(0.0, description="of pins; contacts with clearance do not count for accessibility [m]")
     provenance: ProvenanceRecord
+    slips: list[list[Row]] = Field(
+        [], description="for each normal, the motions about W's origin that move its surface along itself [m, rad]"
+    )
     linked: str | None = Field(None, description="the other end of a segment on which convex edges touch")
 
 

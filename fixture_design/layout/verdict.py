@@ -13,7 +13,7 @@ from fixture_design.contacts import Contact
 from fixture_design.layout.layout import Requirement, Space
 
 #: Rules that make an answer certain whatever the normals are.
-RuleName = Literal["few rows", "few normals"]
+RuleName = Literal["few rows", "few normals", "common slip"]
 
 
 class Answer(StrEnum):
@@ -45,8 +45,9 @@ class Rule:
     """Why an answer holds for every normal within the errors, although its motion is that of the normals as given.
 
     Attributes:
-        name: "few rows" or "few normals", see `analysis.counting`. A later rule is a further name.
-        counted: each contact of the group once; their counts add up to too few for the claim.
+        name: "few rows" or "few normals", see `analysis.counting`; "common slip": the motion moves every touched
+            surface along itself, see `analysis.slipping`.
+        counted: each contact of the group once; their counts add up to too few for the claim. None for a slip.
     """
 
     name: RuleName

@@ -89,10 +89,12 @@ def _fault(claim: str, finding: Finding, case: Case) -> str | None:
 def _proof_fault(proof: _Proof, claim: str, finding: Finding, case: Case) -> str | None:
     evidence, pyramids = finding.evidence, None
     rule = evidence.rule if isinstance(evidence, Motion | Singular) else None
-    if rule is not None:
-        fault = rule_fault(rule, claim, finding.answer, case.contacts)
+    if rule is not None and isinstance(evidence, Motion | Singular):
+        fault = rule_fault(rule, claim, finding.answer, evidence.motion, case.contacts)
         if fault:
             return fault
+    if rule is not None and rule.name == "common slip" and proof.kind in ("motion", "rank") and not proof.strict:
+        return None
     if proof.kind == "motion" and isinstance(evidence, Motion):
         return motion_fault(evidence, case, strict=proof.strict, friction=proof.friction, nominal=rule is not None)
     if proof.kind == "rank" and isinstance(evidence, Singular):

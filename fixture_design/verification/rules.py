@@ -1,7 +1,7 @@
-"""Rules that make an answer certain whatever the normals are, confirmed by counting.
+"""Rules that make an answer certain whatever the normals are, confirmed by counting, or by what surfaces slip along.
 
-Each rule has a function that says what is wrong with it, for one claim; `analysis.counting` says why the rules hold. A
-new rule is a new name in `RuleName` and a function here.
+Each rule has a function that says what is wrong with it, for one claim; `analysis.counting` and `analysis.slipping` say
+why the rules hold. A new rule is a new name in `RuleName` and a function here.
 """
 
 from __future__ import annotations
@@ -10,25 +10,33 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fixture_design.contacts import Contact, unit_normal
+from fixture_design.arrays import Vector
+from fixture_design.contacts import Contact, motion_scaled, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Counted, Rule, RuleName
-from fixture_design.tolerances import ROUND_OFF, WITNESS
+from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF, SLIP_ERRORS, WITNESS
 
 #: Claims that mean "not closed", and how they are answered then.
 _NOT_CLOSED = {("form_closure", Answer.NO), ("accessible", Answer.YES), ("force_closure", Answer.NO)}
 
 
-def rule_fault(rule: Rule, claim: str, answer: Answer | None, contacts: Sequence[Contact]) -> str | None:
-    """What is wrong with a rule as the reason of a claim's answer; None if nothing is."""
+def rule_fault(
+    rule: Rule, claim: str, answer: Answer | None, motion: Vector | None, contacts: Sequence[Contact]
+) -> str | None:
+    """What is wrong with a rule as the reason of a claim's answer; None if nothing is.
+
+    ``motion``: the evidence's. A common slip is checked here altogether, the motion of other rules by its products.
+    """
     check = _RULES.get(rule.name)
     if check is None:
         return f"no rule is called {rule.name!r}"
     if claim == "force_closure" and any(contact.friction > 0 for contact in contacts):
         return "counting normals says nothing of contacts with friction"
-    return check(rule, (claim, answer), contacts)
+    return check(rule, (claim, answer), motion, contacts)
 
 
-def _few_rows(rule: Rule, claimed: tuple[str, Answer | None], contacts: Sequence[Contact]) -> str | None:
+def _few_rows(
+    rule: Rule, claimed: tuple[str, Answer | None], motion: Vector | None, contacts: Sequence[Contact]
+) -> str | None:
     dimension = contacts[0].dimension
     if claimed == ("deterministic", Answer.NO):
         most = dimension - 1
@@ -39,15 +47,49 @@ def _few_rows(rule: Rule, claimed: tuple[str, Answer | None], contacts: Sequence
     return _count_fault(rule, most, contacts, _rows_at_most)
 
 
-def _few_normals(rule: Rule, claimed: tuple[str, Answer | None], contacts: Sequence[Contact]) -> str | None:
+def _few_normals(
+    rule: Rule, claimed: tuple[str, Answer | None], motion: Vector | None, contacts: Sequence[Contact]
+) -> str | None:
     if claimed not in _NOT_CLOSED:
         return "few normals do not tell that"
     return _count_fault(rule, len(contacts[0].point), contacts, lambda block: len(block[0].clauses))
 
 
-_RULES: dict[RuleName, Callable[[Rule, tuple[str, Answer | None], Sequence[Contact]], str | None]] = {
+def _common_slip(
+    rule: Rule, claimed: tuple[str, Answer | None], motion: Vector | None, contacts: Sequence[Contact]
+) -> str | None:
+    """The motion is among each surface's own, within the error; and these are tangent to the surface where touched."""
+    if claimed not in {*_NOT_CLOSED, ("deterministic", Answer.NO)}:
+        return "a common slip does not tell that"
+    if motion is None or motion.shape != (6,) or not (np.isfinite(motion).all() and motion.any()):
+        return "there is no motion to slip"
+    scale = scale_of(contacts)
+    unit = motion_scaled(motion, scale.reference, scale.length)
+    unit = unit / np.linalg.norm(unit)
+    for contact in contacts:
+        error = contact.provenance.normal_error
+        lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
+        limit = SLIP_ERRORS * error * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
+        if error > COPLANAR_ANGLE or len(contact.slips) != len(contact.normals):
+            return f"it is not known how {contact.name}'s surfaces slip"
+        for normal, slips in zip(contact.normals, contact.slips, strict=True):
+            scaled = np.array([motion_scaled(slip, scale.reference, scale.length) for slip in slips])
+            moves = np.array([velocity(slip, contact.point) for slip in slips])
+            sizes = np.linalg.norm(scaled, axis=1)
+            if not len(slips) or not np.isfinite(sizes).all() or not sizes.all():
+                return f"{contact.name} has a surface without motions of its own"
+            if (np.abs(moves @ unit_normal(normal)) > limit * sizes).any():
+                return f"{contact.name}'s surface is said to move along itself, and does not"
+            weights = np.linalg.lstsq(scaled.T, unit, rcond=None)[0]
+            if np.linalg.norm(scaled.T @ weights - unit) > limit:
+                return f"the motion does not move {contact.name}'s surface along itself"
+    return None
+
+
+_RULES: dict[RuleName, Callable[[Rule, tuple[str, Answer | None], Vector | None, Sequence[Contact]], str | None]] = {
     "few rows": _few_rows,
     "few normals": _few_normals,
+    "common slip": _common_slip,
 }
 
 

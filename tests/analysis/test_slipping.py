@@ -1,0 +1,96 @@
+"""Motions that all touched surfaces share: found within the errors of the fits, and only then; forged ones are seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fixture_design.analysis import Restraint, deterministic, form_closure
+from fixture_design.contacts import Contact, Provenance
+from fixture_design.layout import Answer, Group, Motion
+from fixture_design.verification.checker import check_group
+from fixture_design.verification.verify import group_verdict
+
+
+def on_shaft(angle: float, height: float, axis_off: float, error: float) -> Contact:
+    """A contact on a shaft around z through (axis_off, 0, 0), with what is known of how the shaft slips."""
+    normal = np.array([np.cos(angle), np.sin(angle), 0.0])
+    axis = np.array([0.0, 0.0, 1.0])
+    center = np.array([axis_off, 0.0, 0.0])
+    slips = np.vstack([np.concatenate([np.cross(center, axis), axis]), np.concatenate([axis, np.zeros(3)])])
+    point = center + 0.01 * normal + height * axis
+    return Contact(
+        f"C{angle:.3f}_{height:.3f}",
+        "locator",
+        point,
+        ((normal,),),
+        provenance=Provenance("fitted", error),
+        feature=f"cylinder {1 + (height > 0.02)}",
+        slips=(slips,),
+    )
+
+
+def shaft(axis_off: float, error: float) -> list[Contact]:
+    """Twelve contacts on two diameters whose axes were fitted ``axis_off`` apart."""
+    return [on_shaft(0.5 + 0.9 * k, 0.003 * k, axis_off if k > 6 else 0.0, error) for k in range(12)]
+
+
+def test_axes_within_the_error_are_one() -> None:
+    restraint = Restraint.of(shaft(1e-9, 1e-6))
+    closure, located = form_closure(restraint), deterministic(restraint)
+    assert (closure.answer, located.answer) == (Answer.NO, Answer.NO)
+    assert isinstance(closure.evidence, Motion)
+    assert closure.evidence.rule is not None
+    assert closure.evidence.rule.name == "common slip"
+    assert closure.margin is not None
+    assert closure.margin <= 0
+    verdict = group_verdict(Group("all", restraint.contacts, ()), restraint.report, [], restraint.tolerances)
+    assert check_group(verdict, restraint.contacts) == []
+
+
+@pytest.mark.parametrize(("axis_off", "error"), [(1e-4, 1e-6), (1e-9, 1e-3)])
+def test_axes_that_differ_are_two_and_vague_normals_show_nothing(axis_off: float, error: float) -> None:
+    finding = form_closure(Restraint.of(shaft(axis_off, error)))
+    rule = finding.evidence.rule if isinstance(finding.evidence, Motion) else None
+    assert rule is None
+
+
+def test_contacts_that_know_no_slips_are_not_slipped() -> None:
+    contacts = shaft(0.0, 1e-6)
+    assert Restraint.of([*contacts[1:], replace(contacts[0], slips=())]).slip is None
+
+
+@pytest.mark.parametrize(
+    "forge",
+    [
+        lambda c: replace(c, slips=()),
+        lambda c: replace(c, slips=(np.zeros((1, 6)),)),
+        lambda c: replace(c, slips=(np.eye(6),)),
+        lambda c: replace(c, slips=(c.slips[0][1:],)),
+        lambda c: replace(c, provenance=Provenance("fitted", 1e-3)),
+        lambda c: replace(c, clauses=((np.array([0.0, 0.0, 1.0]),),)),
+    ],
+    ids=["unknown", "none", "everything", "along the axis only", "vague", "another normal"],
+)
+def test_forged_slips_are_refused(forge: Callable[[Contact], Contact]) -> None:
+    restraint = Restraint.of(shaft(1e-9, 1e-6))
+    verdict = group_verdict(Group("all", restraint.contacts, ()), restraint.report, [], restraint.tolerances)
+    found = verdict.findings["form_closure"]
+    assert isinstance(found.evidence, Motion)
+    spin = replace(found, evidence=replace(found.evidence, motion=np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])))
+    closure = replace(verdict, findings={"form_closure": spin})
+    assert check_group(closure, restraint.contacts) == []
+    assert check_group(closure, [forge(restraint.contacts[0]), *restraint.contacts[1:]]) != []
+
+
+def test_a_motion_that_is_no_slip_is_refused() -> None:
+    restraint = Restraint.of(shaft(1e-9, 1e-6))
+    verdict = group_verdict(Group("all", restraint.contacts, ()), restraint.report, [], restraint.tolerances)
+    found = verdict.findings["form_closure"]
+    assert isinstance(found.evidence, Motion)
+    for motion in (np.array([1.0, 0, 0, 0, 0, 0]), np.array([0, 0, 0, 0, 1.0, 0]), np.zeros(6), np.zeros(3)):
+        forged = replace(found, evidence=replace(found.evidence, motion=motion))
+        assert check_group(replace(verdict, findings={"form_closure": forged}), restraint.contacts) != []
