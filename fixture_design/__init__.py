@@ -21,7 +21,8 @@ The folders state the theory, and each imports only from those to its right::
 * `layout`: the nouns: part, element, layout, group, verdict.
 * `analysis`: one file a question: form closure, accessibility, force closure, determinacy, hybrid control. Unions are
   searched, not listed (`branches`); every answer comes with bounds on the margin that prove it (`bounds`).
-* `geometry`: contacts from URDF and mesh parts through Drake's signed distance, and from planar polygons; of fixture
+* `geometry`: parts from URDF, meshes and polygons, their facets and round surfaces (`geometry.smooth_regions`);
+  contacts of tips (points, balls, pads, lines, pins) through Drake's signed distance, and from polygons; of fixture
   bodies all there are (`geometry.bodies`), each from the tangent cones of both sides (`contacts.polyhedral`); the part
   posed among bodies, candidate points on its surface, sliding over it.
 * `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.

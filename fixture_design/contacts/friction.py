@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points
+from fixture_design.arrays import Point, Points, cross_products
 from fixture_design.contacts.contact import Contact, unit_normal
 
 #: An inner pyramid has its edges on the cone, an outer one its faces around it.
@@ -43,7 +43,7 @@ def friction_edges(
     if len(unit) == 2:
         tangent = np.array([-unit[1], unit[0]])
         return np.array([unit - friction * tangent, unit + friction * tangent])
-    second = tangents(unit)[1] if first is None else np.cross(unit, first)
+    second = tangents(unit)[1] if first is None else cross_products(unit, first)
     first = tangents(unit)[0] if first is None else first
     angles = 2 * np.pi * np.arange(edges) / edges
     reach = friction if side == "inner" else friction / np.cos(np.pi / edges)
@@ -89,6 +89,6 @@ def tangents(unit: Point) -> tuple[Point, Point]:
     """Two unit tangents, orthogonal to each other and to a unit normal in space; exact for normals along an axis."""
     axis = np.zeros(3)
     axis[int(np.argmin(np.abs(unit)))] = 1.0
-    first = np.cross(unit, axis)
+    first = cross_products(unit, axis)
     first /= np.linalg.norm(first)
-    return first, np.cross(unit, first)
+    return first, cross_products(unit, first)

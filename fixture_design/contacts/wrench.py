@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points, Rows, Vector
+from fixture_design.arrays import Point, Points, Rows, Vector, cross_products
 
 
 def face_vectors(points: Points, normals: Points) -> Rows:
@@ -31,14 +31,14 @@ def cross(points: Points, vectors: Points) -> Rows:
     """x X v row by row: shape (m, 1) in the plane, (m, 3) in space."""
     if points.shape[1] == 2:
         return (points[:, :1] * vectors[:, 1:] - points[:, 1:] * vectors[:, :1]).reshape(-1, 1)
-    return np.cross(points, vectors)
+    return cross_products(points, vectors)
 
 
 def velocity(motion: Vector, point: Point) -> Point:
     """dx + dtheta X x: how the part's point x moves under a displacement about the origin (2-3)."""
     if len(motion) == 3:
         return motion[:2] + motion[2] * np.array([-point[1], point[0]])
-    return motion[:3] + np.cross(motion[3:], point)
+    return motion[:3] + cross_products(motion[3:], point)
 
 
 def motion_about_origin(scaled: Vector, reference: Point, length: float) -> Vector:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fixture_design.arrays import Point, Rows
+from fixture_design.arrays import Point, Rows, cross_products
 from fixture_design.contacts import Contact, torsion_of_patch
 from fixture_design.errors import DimensionError, GeometryError, InputError, OffSurfaceError, UnsupportedError
 from fixture_design.geometry.ball import ball_normal, check_room
@@ -158,7 +158,7 @@ def _with_slips(touch: TipTouch, local: LocalSurface) -> TipTouch:
 def moved_with(X_WP: Pose, motions: Rows) -> Rows:
     """Motions [v; w] about P's origin, one a row, about W's origin."""
     turns = X_WP.vectors(motions[:, 3:])
-    return np.hstack([X_WP.vectors(motions[:, :3]) - np.cross(turns, X_WP.translation), turns])
+    return np.hstack([X_WP.vectors(motions[:, :3]) - cross_products(turns, X_WP.translation), turns])
 
 
 def _touches(

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point, Rows
+from fixture_design.arrays import Indices, Point, Rows, cross_products
 from fixture_design.contacts import Provenance
 from fixture_design.contacts.friction import tangents
 from fixture_design.errors import GeometryError, UnsupportedError
@@ -185,4 +185,4 @@ def plane_slips(normal: Point, p_PC: Point) -> Rows:
     """The motions [v; w] that move a plane along itself, one a row: two ways along it, and turning about its normal."""
     unit = normal / np.linalg.norm(normal)
     along = np.hstack([np.array(tangents(unit)), np.zeros((2, 3))])
-    return np.vstack([along, np.concatenate([np.cross(p_PC, unit), unit])])
+    return np.vstack([along, np.concatenate([cross_products(p_PC, unit), unit])])

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point
+from fixture_design.arrays import Indices, Point, cross_products
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.shapes import Corners, PerTriangle, Vector3
+
+#: The corner after each corner of a triangle.
+_AFTER = np.array([1, 2, 0])
 
 
 def touched_triangles(geometry: PartGeometry, p_PC: Point, within: float) -> Indices:
@@ -42,11 +45,11 @@ def distances(corners: Corners, point: Vector3) -> PerTriangle:
     Returns:
         shape (t,): to the plane where the point is above the triangle, else to its nearest side.
     """
-    sides = np.roll(corners, -1, axis=1) - corners
+    sides = corners[:, _AFTER] - corners
     away = point - corners
     along = np.einsum("tkj,tkj->tk", away, sides) / np.maximum(np.einsum("tkj,tkj->tk", sides, sides), 1e-300)
     to_sides = np.linalg.norm(away - np.clip(along, 0.0, 1.0)[:, :, None] * sides, axis=2).min(axis=1)
-    normals = np.cross(sides[:, 0], sides[:, 1])
-    above = (np.einsum("tkj,tkj->tk", np.cross(normals[:, None, :], sides), away) >= 0).all(axis=1)
+    normals = cross_products(sides[:, 0], sides[:, 1])
+    above = (np.einsum("tkj,tkj->tk", cross_products(normals[:, None, :], sides), away) >= 0).all(axis=1)
     heights = np.abs(np.einsum("tj,tj->t", normals, away[:, 0])) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
     return np.where(above, np.minimum(heights, to_sides), to_sides)
