@@ -47,6 +47,10 @@ RING_EQUAL = 1e-3
 #: well below the depth of a strip under it.
 ROUND_FIT = 1e-6
 
+#: A facet this near to square to an axis of its part was meant to be [rad]. Exporters are that far off, and 2 um over
+#: 1 m is no taper that anybody makes or measures. What is further off is taken as it is.
+SQUARED_ANGLE = 2e-6
+
 #: Surfaces of one axis or direction, known to within their normal errors, agree within so many of these [-].
 SLIP_ERRORS = 4.0
 

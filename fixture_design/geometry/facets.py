@@ -11,7 +11,7 @@ from jaxtyping import Float
 from fixture_design.arrays import Indices
 from fixture_design.contacts import Provenance
 from fixture_design.errors import format_length
-from fixture_design.geometry.noise import angles_to_axes, offsets_from_planes, on_axes
+from fixture_design.geometry.noise import angles_to_axes, nearly_square, offsets_from_planes, on_axes
 from fixture_design.geometry.piece import area_vectors
 from fixture_design.geometry.planes import neighbours, plane_numbers
 from fixture_design.geometry.shapes import (
@@ -25,7 +25,7 @@ from fixture_design.geometry.shapes import (
 )
 from fixture_design.geometry.smoothness import FacetMeasures, provenances
 from fixture_design.geometry.widths import widths_and_angles
-from fixture_design.tolerances import COPLANAR_ANGLE
+from fixture_design.tolerances import DEFAULT
 
 #: Names in a note before it says how many more there are.
 _NAMES_SHOWN = 8
@@ -78,8 +78,8 @@ def facets_of(vertices: Vertices, triangles: Triangles, rounding: PerVertex, fac
     """The facets of a sound mesh.
 
     Slivers belong to facets but have no say in where their planes are. Vertices that turn out to be off by more than
-    their rounding count as known to no better than that, all of them. A facet that is square to an axis within what
-    this allows is taken as square: `Facet.squared` says by how much it was turned.
+    their rounding count as known to no better than that, all of them. A facet that is all but square to an axis is
+    taken as square: `Facet.squared` says by how much it was turned.
 
     Args:
         vertices: shape (v, 3) [m].  triangles: shape (t, 3).  rounding: of each vertex, shape (v,) [m].
@@ -112,8 +112,7 @@ def facets_of(vertices: Vertices, triangles: Triangles, rounding: PerVertex, fac
     if noise > rounding.max():
         measures, origins = measured(np.maximum(rounding, noise))
     turned = angles_to_axes(units)
-    square = np.array([o.kind == "exact" and o.normal_error <= COPLANAR_ANGLE for o in origins], dtype=bool)
-    square &= (turned > 0) & (turned <= [o.normal_error for o in origins])
+    square = np.array([origin.kind == "exact" for origin in origins], dtype=bool) & nearly_square(units) & (turned > 0)
     normals = np.where(square[:, None], on_axes(normals), normals)
     centroids = _centroids(vertices, triangles, areas, number)
     order = np.argsort(number, kind="stable")
@@ -139,7 +138,7 @@ def facets_of(vertices: Vertices, triangles: Triangles, rounding: PerVertex, fac
 
 def facet_notes(name: str, facets: Sequence[Facet], noise: float) -> tuple[str, ...]:
     """What was taken for granted about facets, for people; ``noise`` as in `Facets`."""
-    squared = [facet for facet in facets if facet.squared]
+    squared = [facet for facet in facets if facet.squared > DEFAULT.zero]
     if not squared:
         return ()
     names = ", ".join(facet.name.removeprefix("facet ") for facet in squared[:_NAMES_SHOWN])

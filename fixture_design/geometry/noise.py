@@ -1,8 +1,9 @@
 """How well the vertices of a mesh are known, judged by the plane facets that they should lie in.
 
 The digits of a file say how finely its numbers were written, not how well the program that wrote them knew them: an
-export of a cube may have corners that are off by hundreds of times the rounding of float32. Flat facets tell: their
-vertices should lie in one plane, and facets that are almost square to a coordinate axis were meant to be.
+export of a cube may have corners that are off by several times the rounding of float32. Flat facets tell: their
+vertices should lie in one plane, and facets that are all but square to a coordinate axis were meant to be
+(``SQUARED_ANGLE``). A taper that somebody may have meant tells nothing of noise.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import numpy as np
 
 from fixture_design.arrays import Indices
 from fixture_design.geometry.shapes import FacetMask, FacetVectors, OfFacet, PerFacet, Vertices
-from fixture_design.tolerances import COPLANAR_ANGLE
+from fixture_design.tolerances import SQUARED_ANGLE
 
 
 def offsets_from_planes(
@@ -19,7 +20,7 @@ def offsets_from_planes(
 ) -> PerFacet:
     """For each facet how far the furthest of its vertices is from where it should be [m], shape (f,).
 
-    From the facet's plane; on a facet within ``COPLANAR_ANGLE`` of square to an axis, also half the spread of that
+    From the facet's plane; on a facet within ``SQUARED_ANGLE`` of square to an axis, also half the spread of that
     coordinate.
 
     Args:
@@ -38,8 +39,8 @@ def offsets_from_planes(
 
 
 def nearly_square(units: FacetVectors) -> FacetMask:
-    """Which unit normals are within ``COPLANAR_ANGLE`` of a coordinate axis."""
-    return angles_to_axes(units) <= COPLANAR_ANGLE
+    """Which unit normals are within ``SQUARED_ANGLE`` of a coordinate axis."""
+    return angles_to_axes(units) <= SQUARED_ANGLE
 
 
 def angles_to_axes(units: FacetVectors) -> PerFacet:

@@ -22,6 +22,12 @@ _OFF_AFTER_STEPS, _CONVERGED = (0.2, 0.1, 3e-2, 1e-2, 1e-3, 1e-3, 1e-3, 1e-3), 1
 #: Steps of numerical differences of normals, and singular values that count as none, for points of size one [-].
 _DIFFERENCE, _NO_SAY = 1e-6, 1e-7
 _TINY = 1e-300
+#: What the points of a surface must determine: its parameters without those that move it along itself.
+_FREEDOMS: dict[RoundKind, int] = {"cylinder": 5, "cone": 6, "sphere": 4, "torus": 7}
+#: Points this many offsets from the axis of a cone are its apex [-].
+_AT_APEX = 10.0
+#: Offsets this many times the noise are no noise [-].
+_MORE_THAN_NOISE = 4.0
 #: Fits with a radius beyond so many times the points' size are planes [-].
 _FLAT = 50.0
 
@@ -89,25 +95,42 @@ def jacobian(shape: RoundShape, points: Directions) -> Float[np.ndarray, "n k"]:
     return np.column_stack(columns)
 
 
-def normal_error(shape: RoundShape, points: Directions, where: FacetVectors, off: float) -> float:
-    """How far normals at some places of a fitted surface may be off, if each vertex is off by ``off`` [m, rad].
+def normal_error(
+    shape: RoundShape, points: Directions, where: FacetVectors, off: float, noise: float, width: float
+) -> float:
+    """How far normals at some places of a fitted surface may be off [rad]; infinite if the points leave it open.
 
-    Three standard deviations: the parameters' covariance from the fit, carried over to the normals.
+    The parameters' covariance from the fit, carried over to the normals. Where the points are off by no more than their
+    noise, by three standard deviations. Else the surface is not quite of this kind, all may be off one way, which
+    the square root of their number allows for, and the surface may wave by as much from facet to facet.
+
+    Args:
+        points: that were fitted.  where: the places.
+        off: largest offset of the points [m].  noise: how well they are known [m].  width: of the narrowest facet [m].
     """
     center, size = points.mean(axis=0), float(np.linalg.norm(np.ptp(points, axis=0)))
     radius = shape.radius if shape.kind == "cone" else shape.radius / size
     unit = RoundShape(shape.kind, (shape.point - center) / size, shape.axis, radius, shape.ring / size)
-    _, values, right = np.linalg.svd(jacobian(unit, (points - center) / size), full_matrices=False)
+    rows = jacobian(unit, (points - center) / size)
+    if shape.kind == "cone" and (shape.reaches(points) <= _AT_APEX * max(off, noise)).any():
+        # a vertex at the apex is there in all three directions, though its distance from the surface has no slope
+        rows = np.vstack([rows, np.eye(3, 6)])
+    _, values, right = np.linalg.svd(rows, full_matrices=False)
     counted = values > _NO_SAY * values[0]
-    ways = right[counted] / values[counted, None] * (3 * off / size)
+    if counted.sum() < _FREEDOMS[shape.kind]:
+        return np.inf
+    systematic = off > _MORE_THAN_NOISE * noise
+    deviations = max(3.0, np.sqrt(len(points))) if systematic else 3.0
+    ways = right[counted] / values[counted, None] * (deviations * max(off, noise) / size)
     places = (where - center) / size
     # a step that is small against the shape, whatever the error is
-    reach = [_DIFFERENCE / max(float(np.abs(way).max()), 1e-300) for way in ways]
+    reach = [_DIFFERENCE / max(float(np.abs(way).max()), _TINY) for way in ways]
     turns = [
         np.linalg.norm(_moved(unit, way * r).directions(places) - unit.directions(places), axis=1) / r
         for way, r in zip(ways, reach, strict=True)
     ]
-    return float(np.linalg.norm(turns, axis=0).max())
+    waves = 2 * off / width if systematic else 0.0
+    return float(np.linalg.norm(turns, axis=0).max()) + waves
 
 
 def _moved(shape: RoundShape, step: Vector) -> RoundShape:

@@ -17,7 +17,7 @@ import numpy as np
 from fixture_design.arrays import Indices
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.round_fits import Patch, fitted, normal_error
-from fixture_design.geometry.shapes import Directions, FacetVectors, OfFacet, Triangles, Vertices
+from fixture_design.geometry.shapes import Directions, FacetVectors, OfFacet, PerFacet, Triangles, Vertices
 from fixture_design.geometry.smooth_surface import RoundKind, RoundShape, SmoothSurface
 from fixture_design.tolerances import ON_EDGE_ROUNDINGS, ROUND_FIT, SMOOTH_ANGLE
 
@@ -101,7 +101,8 @@ class _Search:
     corner_counts: OfFacet
     units: FacetVectors
     middles: FacetVectors
-    areas: np.ndarray
+    areas: PerFacet
+    widths: PerFacet
     smooth: list[dict[int, float]]
     free: set[int]
     tolerance: float
@@ -137,6 +138,7 @@ class _Search:
             normals / areas[:, None],
             np.array([facet.centroid for facet in facets]),
             areas,
+            np.array([facet.width for facet in facets]),
             smooth,
             candidates,
             ON_EDGE_ROUNDINGS * noise + ROUND_FIT * size,
@@ -205,7 +207,8 @@ class _Search:
         shape, members = region
         points, middles = self._points_on(shape, members), self.middles[members]
         error = 0.0 if known else float(np.abs(shape.offsets(points)).max())
-        off = 0.0 if known else normal_error(shape, points, middles, max(error, self.noise))
+        width = float(self.widths[members].min())
+        off = 0.0 if known else normal_error(shape, points, middles, error, self.noise, width)
         sagitta = float(np.abs(shape.offsets(middles)).max())
         return SmoothSurface(
             shape.kind, shape, self._hollow(shape, members), np.array(members, dtype=np.int64), error, off, sagitta

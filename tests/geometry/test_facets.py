@@ -213,3 +213,15 @@ def test_a_flat_that_runs_into_fine_fillets_keeps_its_normal(tmp_path: Path) -> 
     for facet in sides:
         true = turn @ np.round(turn.T @ unit(facet.normal))
         assert np.linalg.norm(unit(facet.normal) - true) <= facet.normal_error < 1e-3
+
+
+@pytest.mark.parametrize("taper", [5e-5, 9e-5, 1.2e-4])
+def test_a_taper_is_not_squared_away(tmp_path: Path, taper: float) -> None:
+    vertices, triangles = box(0.05, 0.03, 0.02)
+    tapered = vertices * np.where(vertices[:, 2:] > 0, [[1 - 0.02 / 0.025 * taper, 1, 1]], 1)
+    geometry = loaded(tmp_path, (tapered, triangles))
+    sides = [facet for facet in geometry.facets if abs(unit(facet.normal)[0]) > 0.9]
+    assert [facet.squared for facet in sides] == [0.0, 0.0]
+    for facet in sides:
+        assert unit(facet.normal)[2] == pytest.approx(taper, rel=0.01)
+        assert facet.normal_error < 1e-4

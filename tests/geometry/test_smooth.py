@@ -11,7 +11,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from fixture_design.geometry import PartGeometry, load_part
-from fixture_design.geometry.round_fits import jacobian
+from fixture_design.geometry.round_fits import jacobian, normal_error
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
 from tests.geometry.parts import Mesh, circle, loaded, part, prism, shared, unit
 
@@ -206,3 +206,24 @@ def test_surfaces_that_urdf_gives_are_exact(tmp_path: Path) -> None:
         assert covered(geometry) == len(geometry.facets)
         assert {surface.normal_error for surface in geometry.smooth_surfaces} == {0.0}
         assert {geometry.provenance_of(facet).kind for facet in range(len(geometry.facets))} == {"exact"}
+
+
+@pytest.mark.parametrize("oval", [1e-9, 1e-8, 3e-8])
+def test_a_shaft_that_is_not_quite_round_says_so(tmp_path: Path, oval: float) -> None:
+    """Its normals are off by more than noise would explain, and that is within what is said of them."""
+    angles = 2 * np.pi * np.arange(100) / 100
+    outline = np.column_stack([(0.01 + oval) * np.cos(angles), 0.01 * np.sin(angles)])
+    (surface,) = loaded(tmp_path, prism(outline.tolist(), 0.03)).smooth_surfaces
+    true = np.column_stack([np.cos(angles), (1 + oval / 0.01) * np.sin(angles)])
+    off = [
+        np.linalg.norm(surface.normal(np.array([*point, 0.01]))[:2] - unit(normal))
+        for point, normal in zip(outline, true, strict=True)
+    ]
+    assert max(off) <= surface.normal_error < 1e-4
+
+
+def test_too_little_of_a_torus_is_no_torus(tmp_path: Path) -> None:
+    """What the vertices leave open is not known, and a surface that is not known is none."""
+    shape = RoundShape("torus", np.zeros(3), np.array([0, 0, 1.0]), 0.01, 0.03)
+    points = np.array([[0.04, 0, 0], [0.0399, 0.001, 0], [0.0399, -0.001, 0]])
+    assert normal_error(shape, points, points, 1e-9, 1e-9, 1e-3) == np.inf
