@@ -37,11 +37,11 @@ COPLANAR_ANGLE = 1e-4
 #: more from strip to strip.
 SMOOTH_ANGLE = float(np.radians(35.0))
 
-#: Angle up to which equal facets in a closed ring may be a coarse mesh of a round surface [rad]: five a turn.
+#: Angle up to which equal facets in a row may be a coarse mesh of a round surface [rad]: five a turn.
 RING_ANGLE = float(np.radians(73.0))
 
-#: Facets in such a ring are this equal, in area and angle [-].
-RING_EQUAL = 1e-3
+#: Facets in such a row are this equal, in area and angle [-]: meshes are uneven where other features cut them.
+RING_EQUAL = 0.25
 
 #: Vertices this near to a round surface lie on it, relative to the size of the part [-]: beyond what CAD kernels leave,
 #: well below the depth of a strip under it.

@@ -57,7 +57,7 @@ def feature_name(geometry: PartGeometry, facets: Indices) -> str:
         surface = geometry.surface_of_facet(facet)
         names.append(geometry.facets[facet].name if surface is None else surface.name)
     names = list(dict.fromkeys(names))
-    kind = {1: "", 2: "edge "}.get(len(names), "apex ")
+    kind = {0: "the surface", 1: "", 2: "edge "}.get(len(names), "apex ")
     return kind + " | ".join(names)
 
 

@@ -25,7 +25,7 @@ from fixture_design.geometry.shapes import (
     Vector3,
     Vertices,
 )
-from fixture_design.geometry.smooth_regions import Region, smooth_surfaces
+from fixture_design.geometry.smooth_regions import Region, may_be_round, smooth_surfaces
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
 from fixture_design.geometry.winding import shells, winding_number
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
@@ -152,10 +152,11 @@ class PartGeometry:
 
     def provenance_of(self, facet: int) -> Provenance:
         """Of a facet's normal, or of its round surface's; such surfaces are looked for when first asked."""
-        return self._judged_again[facet] if self._may_be_round(facet) else self.facets[facet].provenance
+        own = self.facets[facet].provenance
+        return self._judged_again.get(facet, own) if self._may_be_round(facet) else own
 
     def _may_be_round(self, facet: int) -> bool:
-        return facet in self._given_facets or self.facets[facet].provenance.kind == "approximate"
+        return facet in self._given_facets or may_be_round(self.facets[facet])
 
     @cached_property
     def facet_of_triangle(self) -> OfTriangle:

@@ -14,6 +14,7 @@ from fixture_design.arrays import Point
 from fixture_design.contacts import Provenance
 from fixture_design.contacts.friction import tangents
 from fixture_design.errors import GeometryError, format_length
+from fixture_design.geometry.local import plane_slips
 from fixture_design.geometry.nearest import distances
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.sets import place_text
@@ -116,7 +117,10 @@ def _in_hole(
     # exact zeros on the axes of the coordinates: cos(pi / 2) is not one
     directions = np.round(np.cos(angles), 15)[:, None] * x + np.round(np.sin(angles), 15)[:, None] * y
     return tuple(
-        TipTouch(center + hole.radius * e, ((-e,),), provenance, hole.name, clearance=tip.clearance) for e in directions
+        TipTouch(
+            center + hole.radius * e, ((-e,),), provenance, hole.name, clearance=tip.clearance, slips=(hole.slips(),)
+        )
+        for e in directions
     )
 
 
@@ -189,6 +193,13 @@ def _in_slot(
     origins = [geometry.provenance_of(wall) for wall in walls]
     provenance = Provenance("exact", max(origin.normal_error for origin in origins))
     return tuple(
-        TipTouch(p_PA - height * unit, ((facet.normal,),), provenance, facet.name, clearance=tip.clearance)
+        TipTouch(
+            p_PA - height * unit,
+            ((facet.normal,),),
+            provenance,
+            facet.name,
+            clearance=tip.clearance,
+            slips=(plane_slips(facet.normal, p_PA - height * unit),),
+        )
         for facet, unit, height in zip(facets, units, heights, strict=True)
     )

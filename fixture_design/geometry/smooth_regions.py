@@ -28,6 +28,8 @@ _FEWEST: dict[RoundKind, tuple[int, int]] = {"cylinder": (4, 10), "cone": (4, 9)
 _DEEPER = 2.5
 #: Corners of one surface may be off another by this many tolerances, for both to be tried as one [-].
 _SAME = 100.0
+#: Smooth neighbours that a strip has, and triangles it is made of, at most.
+_STRIP_SIDES, _STRIP_TRIANGLES = 2, 12
 #: Corners on the surface that make up for others of the same facet that lie on chords.
 _FEWEST_ON = 4
 #: Neighbours of a facet that are combined to patches, and facets in the largest patch.
@@ -80,6 +82,17 @@ def smooth_surfaces(
     return tuple(named)
 
 
+def may_be_round(facet: Facet) -> bool:
+    """Whether a facet may stand for a round surface: it is doubtful, or an outwardly flat strip between narrower ones.
+
+    Such a strip has few corners and meets its neighbours smoothly.
+    """
+    if facet.provenance.kind == "approximate":
+        return True
+    smooth = sum(abs(angle) < SMOOTH_ANGLE for angle in facet.angles.values())
+    return smooth >= _STRIP_SIDES and len(facet.triangles) <= _STRIP_TRIANGLES
+
+
 def _order(surface: SmoothSurface, size: float) -> tuple[str, list[float]]:
     """Rounded, so that names do not hang on the last bit."""
     place = np.array([*surface.point, surface.radius]) / size
@@ -105,6 +118,7 @@ class _Search:
     widths: PerFacet
     smooth: list[dict[int, float]]
     free: set[int]
+    doubtful: set[int]
     tolerance: float
     noise: float
     size: float
@@ -122,13 +136,10 @@ class _Search:
 
     @classmethod
     def of(cls, facets: Sequence[Facet], vertices: Vertices, triangles: Triangles, noise: float) -> _Search:
-        candidates = {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate"}
+        candidates = {i for i, facet in enumerate(facets) if may_be_round(facet)}
         normals = np.array([facet.normal for facet in facets])
         areas = np.linalg.norm(normals, axis=1)
-        smooth = [
-            {o: angle for o, angle in facet.angles.items() if o in candidates and abs(angle) < SMOOTH_ANGLE}
-            for facet in facets
-        ]
+        smooth = [{o: angle for o, angle in facet.angles.items() if abs(angle) < SMOOTH_ANGLE} for facet in facets]
         corners = [np.unique(triangles[facet.triangles]) for facet in facets]
         size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
         return cls(
@@ -141,6 +152,7 @@ class _Search:
             np.array([facet.width for facet in facets]),
             smooth,
             candidates,
+            {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate"},
             ON_EDGE_ROUNDINGS * noise + ROUND_FIT * size,
             noise,
             size,
@@ -148,7 +160,7 @@ class _Search:
 
     def seeds(self) -> Iterator[int]:
         """Facets that are still free, the largest first."""
-        for seed in sorted(self.free, key=lambda facet: (-self.areas[facet], facet)):
+        for seed in sorted(self.free & self.doubtful, key=lambda facet: (-self.areas[facet], facet)):
             if seed in self.free and self.failures[self.component[seed]] < _MOST_FAILURES:
                 yield seed
 

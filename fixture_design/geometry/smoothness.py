@@ -5,8 +5,8 @@ facet counts as a strip of a curved surface if it meets two or more neighbours s
 not much wider than one of them. A flat between fillets meets them smoothly too, but is wider; chamfers meet their
 flats at 45 degrees. The last strip of a surface has one smooth neighbour only: it is judged with that neighbour.
 
-A coarse mesh may have a shaft in six strips, and so does hexagonal stock: nobody can tell. A facet in a closed ring of
-up to ten equal ones counts as a strip too (`rings`), until the designer says that the part is faceted.
+A coarse mesh may have a shaft in six strips, and so does hexagonal stock: nobody can tell. A facet in a row of four or
+more equal ones counts as a strip too (`rings`), until the designer says that the part is faceted.
 """
 
 from __future__ import annotations

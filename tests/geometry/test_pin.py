@@ -169,3 +169,16 @@ def test_checker_refuses_accessibility_that_rests_on_closed_clearances(tmp_path:
     verdict = verify(dowels(tmp_path, "diamond", 2e-5))
     closed = replace(verdict, contacts=tuple(replace(contact, clearance=0.0) for contact in verdict.contacts))
     assert any("strongly_accessible" in problem for problem in check(closed))
+
+
+def test_a_plate_turns_about_a_single_pin(tmp_path: Path) -> None:
+    """Certain, though the hole was fitted to a mesh in float32: bore and rests both slip along that turn."""
+    layout = dowels(tmp_path, "round", 0.0)
+    vertices, triangles = prism(OUTLINE, 0.01, [circle(RADIUS, 64, LEFT)])
+    file = write(tmp_path, (vertices.astype(np.float32).astype(float), triangles), "one.obj")
+    layout = replace(layout, part=part(file), elements=tuple(e for e in layout.elements if e.name != "P2"))
+    verdict = verify(layout)
+    findings = verdict.groups["locators"].findings
+    assert findings["deterministic"].answer is Answer.NO
+    assert findings["form_closure"].answer is Answer.NO
+    assert check(verdict) == []

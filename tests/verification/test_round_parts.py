@@ -106,6 +106,50 @@ def test_coarse_round_parts_are_never_called_closed(tmp_path: Path, name: str) -
         assert verify(layout).groups["all"].findings["form_closure"].answer is not Answer.YES
 
 
+def around(angles: np.ndarray, radius: float = 0.02, height: float = 0.05) -> Mesh:
+    return prism((radius * np.column_stack([np.cos(angles), np.sin(angles)])).tolist(), height)
+
+
+@pytest.mark.parametrize(
+    ("count", "extra"), [(24, (4, -19)), (36, (2.5, -12.5)), (36, (5, -15)), (60, (1.5, -7.5)), (120, (0.8, -3.8))]
+)
+def test_a_strip_between_narrower_ones_is_a_strip(tmp_path: Path, count: int, extra: tuple[float, float]) -> None:
+    """As an imprinted edge or a cross hole leaves it: no flat that would keep the shaft from turning."""
+    angles = np.sort(np.concatenate([2 * np.pi * np.arange(count) / count, np.radians(extra) % (2 * np.pi)]))
+    file = write(tmp_path, around(angles))
+    step = 2 * np.pi / count
+    strip = [(-0.9 * step, 0.01), (-0.9 * step, 0.04), (-0.1 * step, 0.01), (-0.1 * step, 0.04)]
+    sides = [(np.radians(a), z) for a in (115, 235) for z in (0.01, 0.04)]
+    at = [[0.02 * np.cos(a), 0.02 * np.sin(a), z] for a, z in (*strip, *sides)]
+    at += [[0.01 * np.cos(a), 0.01 * np.sin(a), z] for a in (0, 2, 4) for z in (0, 0.05)]
+    elements = tuple(Element(f"E{i}", "locator", np.array(point)) for i, point in enumerate(at))
+    verdict = verify(Layout("imprint", part=part(file), elements=elements, surface_gap=2e-4))
+    assert verdict.groups["all"].findings["form_closure"].answer is Answer.NO
+    assert verdict.groups["all"].findings["deterministic"].answer is Answer.NO
+
+
+@pytest.mark.parametrize(("count", "uneven"), [(6, 0.002), (6, 0.02), (8, 0.002), (8, 0.01), (10, 0.005)])
+def test_coarse_and_uneven_shafts_are_never_called_closed(tmp_path: Path, count: int, uneven: float) -> None:
+    rng = np.random.default_rng(count)
+    file = write(tmp_path, around(2 * np.pi * np.arange(count) / count + uneven * rng.uniform(-1, 1, count)))
+    for layout in layouts(file, rng, 4, 24):
+        assert verify(layout).groups["all"].findings["form_closure"].answer is not Answer.YES
+
+
+@pytest.mark.parametrize("steps", [4, 5, 6, 12])
+def test_half_round_parts_are_not_located_by_their_round_side(tmp_path: Path, steps: int) -> None:
+    angles = np.pi * np.arange(steps + 1) / steps
+    file = write(tmp_path, around(angles))
+    middles = (angles[1:] + angles[:-1]) / 2
+    at = [
+        [0.02 * np.cos(np.pi / steps / 2) * f(a) for f in (np.cos, np.sin)] + [z] for a in middles for z in (0.01, 0.04)
+    ]
+    at += [[0.004, 0.008, 0.0], [-0.004, 0.008, 0.0], [0.0, 0.004, 0.05]]
+    elements = tuple(Element(f"E{i}", "locator", np.array(point)) for i, point in enumerate(at))
+    verdict = verify(Layout("half", part=part(file), elements=elements, surface_gap=1e-4))
+    assert verdict.groups["all"].findings["deterministic"].answer is not Answer.YES
+
+
 @pytest.mark.parametrize("count", [40, 120])
 def test_a_flat_stops_the_spin(tmp_path: Path, count: int) -> None:
     file = write(tmp_path, d_shaft(count))
