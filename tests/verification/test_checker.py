@@ -313,3 +313,14 @@ def test_no_rule_holds_where_all_contacts_have_clearance(name: RuleName) -> None
     assert "no contacts" in check(forged(verdict, "accessible", Finding(Answer.YES, 1.0, ruled, -1.0)))[0]
     of_space = Finding(Answer.YES, 1.0, Motion(np.eye(6)[0], -1.0), -1.0)
     assert "finite vector" in check(forged(verdict, "accessible", of_space))[0]
+
+
+def test_a_short_rank_and_its_choice_are_possible_ones() -> None:
+    verdict = verdict_of(("P3", "P4"))
+    finding = verdict.groups["all"].findings["deterministic"]
+    assert isinstance(finding.evidence, Singular)
+    for rank in (-1, 3, 77):
+        wrong = replace(finding, evidence=replace(finding.evidence, rank=rank))
+        assert "rank" in check(forged(verdict, "deterministic", wrong))[0]
+    wrong = replace(finding, evidence=replace(finding.evidence, choices=((("P9", 0, 0),),)))
+    assert "no alternative" in check(forged(verdict, "deterministic", wrong))[0]
