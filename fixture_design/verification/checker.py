@@ -6,9 +6,12 @@ uses no solver. `proofs` has the arithmetic.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
+
+import numpy as np
 
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
@@ -41,6 +44,9 @@ _PROOFS = {
     ("force_closure", Answer.NO): _Proof("motion", friction=True),
 }
 
+#: Every group must have a finding for each of these.
+CLAIMS = tuple(dict.fromkeys(claim for claim, _ in _PROOFS))
+
 #: Claims that contacts with clearance have no part in.
 _WITH_CLEARANCE_OPEN = ("accessible", "strongly_accessible")
 
@@ -51,22 +57,44 @@ def check(verdict: Verdict) -> list[str]:
     Undecided answers claim nothing and need no proof.
     """
     contacts = {contact.name: contact for contact in verdict.contacts}
-    problems = []
-    for group in verdict.groups.values():
-        missing = [name for name in group.contacts if name not in contacts]
-        if missing:
-            problems.append(f"{group.name}: the verdict has no contacts {', '.join(missing)}")
-            continue
-        chosen = [contacts[name] for name in group.contacts]
-        problems += check_group(group, chosen)
+    problems = _repeated("the verdict", [contact.name for contact in verdict.contacts])
+    if "all" not in verdict.groups:
+        problems.append("the verdict has no group 'all'")
+    for name, group in verdict.groups.items():
+        problems += [f"{name}: there is no finding for {claim}" for claim in CLAIMS if claim not in group.findings]
+        faults = _member_faults(name, group, contacts)
+        problems += faults or check_group(group, [contacts[member] for member in group.contacts])
     return problems + _requirement_faults(verdict)
 
 
+def _member_faults(name: str, group: GroupVerdict, contacts: Mapping[str, Contact]) -> list[str]:
+    """Members are known contacts, each once: every contact in `all`, those of role locator in `locators`."""
+    if group.name != name:
+        return [f"{name}: the group is called {group.name!r}"]
+    missing = [member for member in group.contacts if member not in contacts]
+    if missing:
+        return [f"{name}: the verdict has no contacts {', '.join(missing)}"]
+    members = {
+        "all": set(contacts),
+        "locators": {contact.name for contact in contacts.values() if contact.role == "locator"},
+    }.get(name, set(group.contacts))
+    wrong = sorted(members ^ set(group.contacts))
+    if wrong:
+        return [f"{name}: the group has too many or too few contacts: {', '.join(wrong)}"]
+    return _repeated(name, group.contacts)
+
+
+def _repeated(place: str, names: Sequence[str]) -> list[str]:
+    twice = [name for name, count in Counter(names).items() if count > 1]
+    return [f"{place}: there are several contacts called {', '.join(twice)}"] if twice else []
+
+
 def check_group(group: GroupVerdict, contacts: Sequence[Contact]) -> list[str]:
-    """Problems of one group's findings; empty groups have none to have."""
+    """Problems of one group's findings; empty groups have no answers to have."""
     if not contacts:
-        return [f"{group.name}: {c} is {f.answer} of no contacts" for c, f in group.findings.items() if f.answer]
-    case = Case(contacts)
+        answered = [(claim, finding.answer) for claim, finding in group.findings.items() if finding.answer]
+        return [f"{group.name}: {claim} is {answer} of no contacts" for claim, answer in answered]
+    case = Case(contacts, contacts[0].dimension)
     problems = []
     for claim, finding in group.findings.items():
         problem = _fault(claim, finding, case.opened if claim in _WITH_CLEARANCE_OPEN else case)
@@ -78,6 +106,8 @@ def check_group(group: GroupVerdict, contacts: Sequence[Contact]) -> list[str]:
 def _fault(claim: str, finding: Finding, case: Case) -> str | None:
     if finding.answer is None:
         return "there are contacts, so there must be an answer"
+    if finding.margin is not None and not np.isfinite(finding.margin):
+        return f"the margin {finding.margin} is no finite number"
     if finding.answer is Answer.UNDECIDED:
         return None
     proof = _PROOFS.get((claim, finding.answer))
@@ -122,9 +152,15 @@ def _requirement_faults(verdict: Verdict) -> list[str]:
     """Requirements must say what their group's finding says, and be summed up right."""
     problems = []
     for requirement in verdict.requirements:
-        finding = verdict.groups[requirement.group].findings.get(requirement.require)
-        if finding is not None and finding.answer is not requirement.answer:
-            problems.append(f"{requirement.group}: {requirement.require} is {finding.answer}, not {requirement.answer}")
+        group = verdict.groups.get(requirement.group)
+        if group is None:
+            problems.append(f"{requirement.require} is required of {requirement.group!r}, and there is no such group")
+            continue
+        finding = group.findings.get(requirement.require)
+        unanswered = Answer.UNDECIDED if group.contacts else None
+        answer = unanswered if finding is None else finding.answer
+        if requirement.answer is not answer:
+            problems.append(f"{requirement.group}: {requirement.require} is {answer}, not {requirement.answer}")
     answers = [requirement.answer for requirement in verdict.requirements]
     if verdict.satisfied is not sum_up(answers):
         problems.append(f"satisfied is {verdict.satisfied}, which the requirements do not say")

@@ -34,9 +34,10 @@ Place = tuple[str, int]
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Contacts, and the scale their rows are measured in: their own."""
+    """Contacts (possibly none), the dimension of their space's motions, and the scale of their rows: their own."""
 
     contacts: Sequence[Contact]
+    dimension: int
 
     @property
     def opened(self) -> Case:
@@ -171,7 +172,7 @@ def rank_fault(evidence: Singular, case: Case, *, full: bool, nominal: bool = Fa
     """
     if not full:
         return _notice_fault(evidence, case, nominal)
-    rank = case.contacts[0].dimension
+    rank = case.dimension
     if evidence.rank != rank:
         return f"rank {evidence.rank} is not {rank}"
     for choice in evidence.choices:
@@ -282,6 +283,12 @@ def _notice_fault(evidence: Singular, case: Case, nominal: bool) -> str | None:
     motion = None if evidence.motion is None else _unit_motion(evidence.motion, case)
     if motion is None:
         return "there is no finite motion"
+    if not 0 <= evidence.rank < case.dimension:
+        return f"the rank {evidence.rank} is not between 0 and {case.dimension - 1}"
+    for choice in evidence.choices:
+        taken = _as_choice(choice, case)
+        if isinstance(taken, str):
+            return taken
     worst = max(
         min(max(_work(c, n, motion, case, False, nominal) for n in (normal, -normal)) for normal in clause)
         for c in case.contacts
@@ -292,12 +299,10 @@ def _notice_fault(evidence: Singular, case: Case, nominal: bool) -> str | None:
 
 def _unit_motion(motion: Vector, case: Case) -> Vector | None:
     """The motion [dx; dtheta] at size one in the case's scale; None if it is no motion."""
-    if motion.shape not in ((3,), (6,)) or not np.isfinite(motion).all():
+    if motion.shape != (case.dimension,) or not np.isfinite(motion).all():
         return None
     if not case.contacts:
         return motion if motion.any() else None
-    if len(motion) != case.contacts[0].dimension:
-        return None
     size = float(np.linalg.norm(_scaled(motion, case)))
     return motion / size if size > 0 else None
 

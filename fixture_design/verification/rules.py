@@ -29,6 +29,8 @@ def rule_fault(
     check = _RULES.get(rule.name)
     if check is None:
         return f"no rule is called {rule.name!r}"
+    if not contacts:
+        return "no rule holds of no contacts"
     if claim == "force_closure" and any(contact.friction > 0 for contact in contacts):
         return "counting normals says nothing of contacts with friction"
     return check(rule, (claim, answer), motion, contacts)

@@ -7,8 +7,22 @@ import numpy as np
 import pytest
 
 from fixture_design.contacts import Contact, Provenance
-from fixture_design.layout import Answer, Finding, Layout, Motion, RequirementVerdict, Singular, Verdict, Weights
+from fixture_design.layout import (
+    Answer,
+    Finding,
+    Layout,
+    Motion,
+    Requirement,
+    RequirementVerdict,
+    Rule,
+    RuleName,
+    Singular,
+    Verdict,
+    Weights,
+)
 from fixture_design.verification import check, verify
+from fixture_design.verification.checker import CLAIMS
+from fixture_design.verification.verify import QUESTIONS
 from tests.problems import figure_8
 
 OPEN, CLOSED = ("P1", "P2", "P3", "P4"), ("P1", "P2", "P3", "P4", "P5")
@@ -209,11 +223,104 @@ def test_rank_deficiency_is_found_by_the_checker_too() -> None:
 
 
 def test_full_rank_of_some_branches_is_not_that_of_all() -> None:
-    """Three apices: the rank must be proved for every alternative that matters."""
-    apices = [Contact.of(f"A{i}", "locator", [i, i**2], [[[1, i], [i, -1 - i]]]) for i in range(3)]
-    verdict = verify(Layout("apices", "planar", contacts=tuple(apices)))
+    """A corner that is needed: the rank must be proved for every alternative that matters."""
+    contacts = (
+        Contact.of("A", "locator", [0, 3], [[[1, 0], [1, 1]]]),
+        Contact.on_facet("B", "locator", [0, 0], [1, 0]),
+        Contact.on_facet("C", "locator", [0, 0], [0, 1]),
+    )
+    verdict = verify(Layout("corner", "planar", contacts=contacts))
     finding = verdict.groups["all"].findings["deterministic"]
     assert check(verdict) == []
-    if isinstance(finding.evidence, Singular) and finding.answer is Answer.YES:
-        partly = replace(finding.evidence, choices=finding.evidence.choices[1:])
-        assert "covered" in check(forged(verdict, "deterministic", replace(finding, evidence=partly)))[0]
+    assert finding.answer is Answer.YES
+    assert isinstance(finding.evidence, Singular)
+    assert len(finding.evidence.choices) == 2
+    partly = replace(finding.evidence, choices=finding.evidence.choices[1:])
+    assert "covered" in check(forged(verdict, "deterministic", replace(finding, evidence=partly)))[0]
+
+
+def without(verdict: Verdict, group: str, claim: str) -> Verdict:
+    found = verdict.groups[group]
+    kept = {name: finding for name, finding in found.findings.items() if name != claim}
+    return replace(verdict, groups={**verdict.groups, group: replace(found, findings=kept)})
+
+
+def test_claims_are_the_questions_and_every_group_has_them() -> None:
+    assert set(CLAIMS) == set(QUESTIONS)
+    verdict = verdict_of(CLOSED)
+    for group in verdict.groups:
+        for claim in CLAIMS:
+            assert check(without(verdict, group, claim)) == [f"{group}: there is no finding for {claim}"]
+
+
+def required(verdict: Verdict, group: str, require: Requirement, answer: Answer | None) -> Verdict:
+    satisfied = Answer.NO if answer is None else answer
+    return replace(verdict, requirements=(RequirementVerdict(group, require, answer),), satisfied=satisfied)
+
+
+def test_a_requirement_without_finding_is_undecided() -> None:
+    verdict = verdict_of(CLOSED)
+    assert check(required(verdict, "all", "seated", Answer.UNDECIDED)) == []
+    for answer in (Answer.YES, Answer.NO, None):
+        assert check(required(verdict, "all", "seated", answer)) != []
+    unknown = check(required(verdict, "elsewhere", "seated", Answer.UNDECIDED))
+    assert unknown == ["seated is required of 'elsewhere', and there is no such group"]
+    unanswered = without(verdict, "all", "form_closure")
+    assert any("not yes" in problem for problem in check(required(unanswered, "all", "form_closure", Answer.YES)))
+
+
+def test_a_requirement_of_an_empty_group_has_no_answer() -> None:
+    contacts = tuple(replace(contact, role="clamp") for contact in figure_8(CLOSED))
+    verdict = verify(Layout("clamps", "planar", contacts=contacts))
+    assert check(required(verdict, "locators", "seated", None)) == []
+    for answer in Answer:
+        assert check(required(verdict, "locators", "seated", answer)) != []
+
+
+@pytest.mark.parametrize("group", ["all", "locators"])
+@pytest.mark.parametrize("members", [(*CLOSED[:4],), (*CLOSED, "P9"), (*CLOSED, "P1"), ()])
+def test_groups_have_the_contacts_that_they_are_named_after(group: str, members: tuple[str, ...]) -> None:
+    verdict = verdict_of(CLOSED)
+    false = replace(verdict.groups[group], contacts=members)
+    if not members:
+        false = replace(false, findings={claim: Finding(None) for claim in CLAIMS})
+    problems = check(replace(verdict, groups={**verdict.groups, group: false}))
+    assert [problem.split(":")[0] for problem in problems] == [group]
+
+
+def test_names_of_groups_and_contacts() -> None:
+    verdict = verdict_of(CLOSED)
+    locators = {"locators": verdict.groups["locators"]}
+    assert "no group 'all'" in check(replace(verdict, groups=locators))[0]
+    swapped = {**locators, "all": replace(verdict.groups["all"], name="stage")}
+    assert "called 'stage'" in check(replace(verdict, groups=swapped))[0]
+    assert "several" in check(replace(verdict, contacts=(*verdict.contacts, verdict.contacts[0])))[0]
+
+
+@pytest.mark.parametrize("margin", [np.nan, np.inf, -np.inf])
+def test_margins_are_finite(margin: float) -> None:
+    verdict = verdict_of(CLOSED)
+    finding = replace(verdict.groups["all"].findings["form_closure"], margin=margin)
+    assert "finite" in check(forged(verdict, "form_closure", finding))[0]
+
+
+@pytest.mark.parametrize("name", ["few rows", "few normals", "common slip"])
+def test_no_rule_holds_where_all_contacts_have_clearance(name: RuleName) -> None:
+    loose = tuple(replace(contact, clearance=1e-4) for contact in figure_8(OPEN))
+    verdict = verify(Layout("loose", "planar", contacts=loose))
+    assert check(verdict) == []
+    ruled = Motion(np.eye(3)[0], -1.0, Rule(name, ()))
+    assert "no contacts" in check(forged(verdict, "accessible", Finding(Answer.YES, 1.0, ruled, -1.0)))[0]
+    of_space = Finding(Answer.YES, 1.0, Motion(np.eye(6)[0], -1.0), -1.0)
+    assert "finite vector" in check(forged(verdict, "accessible", of_space))[0]
+
+
+def test_a_short_rank_and_its_choice_are_possible_ones() -> None:
+    verdict = verdict_of(("P3", "P4"))
+    finding = verdict.groups["all"].findings["deterministic"]
+    assert isinstance(finding.evidence, Singular)
+    for rank in (-1, 3, 77):
+        wrong = replace(finding, evidence=replace(finding.evidence, rank=rank))
+        assert "rank" in check(forged(verdict, "deterministic", wrong))[0]
+    wrong = replace(finding, evidence=replace(finding.evidence, choices=((("P9", 0, 0),),)))
+    assert "no alternative" in check(forged(verdict, "deterministic", wrong))[0]
