@@ -61,9 +61,9 @@ def check(verdict: Verdict) -> list[str]:
     if "all" not in verdict.groups:
         problems.append("the verdict has no group 'all'")
     for name, group in verdict.groups.items():
-        problems += [f"{name}: there is no finding for {claim}" for claim in CLAIMS if claim not in group.findings]
         faults = _member_faults(name, group, contacts)
         problems += faults or check_group(group, [contacts[member] for member in group.contacts])
+        problems += [f"{name}: there is no finding for {claim}" for claim in CLAIMS if claim not in group.findings]
     return problems + _requirement_faults(verdict)
 
 

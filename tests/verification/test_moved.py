@@ -106,7 +106,8 @@ def test_weights_are_checked_on_the_edges_that_the_verdict_states() -> None:
         (across[:2],),
     ):
         forged = replace(finding, tangents={**finding.tangents, name: wrong})
-        assert check(replace(verdict, groups={"all": replace(group, findings={"force_closure": forged})})) != [], wrong
+        findings = {**group.findings, "force_closure": forged}
+        assert check(replace(verdict, groups={"all": replace(group, findings=findings)})) != [], wrong
 
 
 def fingers_named() -> list[Contact]:
