@@ -11,7 +11,7 @@ from fixture_design.geometry.shapes import Vector3
 
 
 def nearest_place(part: Features, body: Features) -> tuple[float, Vector3]:
-    """The distance between two solids that do not touch [m], and where: from vertices to surfaces, and between edges."""
+    """The distance between two solids that do not touch [m], and where: vertices to surfaces, and between edges."""
     best, place = np.inf, part.geometry.vertices[0]
     for mine, theirs in ((part, body), (body, part)):
         # a vertex is no nearer to the other solid than to its box
