@@ -314,3 +314,15 @@ def test_a_shaft_sunk_by_less_than_its_facets_are_off_it_is_judged_by_its_surfac
         # deeper than facets are off it a vertex is found, which may be that much higher
         low = sunk if sunk < 4e-5 else sunk - 3.3e-5
         assert 0.99 * low <= caught.value.depth <= 1.01 * sunk
+
+
+def test_jaws_that_all_but_face_each_other_are_no_certain_no(tmp_path: Path, cube: Part) -> None:
+    """Each leans open by 0.2 mrad, within the gap all over: what is that near may be parallel or not."""
+    jaw = boxes(tmp_path, "jaw", ([-0.02, -0.03, -0.015], [0, 0.03, 0.015]))
+    left = body(jaw, Pose.from_xyz_rpy([-0.02, 0, 0], [0, -2e-4, 0]))
+    right = replace(body(jaw, Pose.from_xyz_rpy([0.02, 0, 0], [0, 2e-4, np.pi])), name="right")
+    layout = layout_of(cube, left, right)
+    for contact in contacts(layout):
+        off = min(np.linalg.norm(unit(n) - s * np.array([1, 0, 0])) for n in contact.normals for s in (-1, 1))
+        assert contact.provenance.normal_error >= off or off > 1e-4
+    assert answers(layout)["strongly_accessible"] != "no"
