@@ -320,7 +320,7 @@ def test_jaws_that_all_but_face_each_other_are_no_certain_no(tmp_path: Path, cub
     """Each leans open by 0.2 mrad, within the gap all over: what is that near may be parallel or not."""
     jaw = boxes(tmp_path, "jaw", ([-0.02, -0.03, -0.015], [0, 0.03, 0.015]))
     left = body(jaw, Pose.from_xyz_rpy([-0.02, 0, 0], [0, -2e-4, 0]))
-    right = replace(body(jaw, Pose.from_xyz_rpy([0.02, 0, 0], [0, 2e-4, np.pi])), name="right")
+    right = replace(body(jaw, Pose.from_xyz_rpy([0.02, 0, 0], [0, -2e-4, np.pi])), name="right")
     layout = layout_of(cube, left, right)
     for contact in contacts(layout):
         off = min(np.linalg.norm(unit(n) - s * np.array([1, 0, 0])) for n in contact.normals for s in (-1, 1))
