@@ -98,11 +98,13 @@ def _spanned(piece: Piece, tolerances: Tolerances) -> PolyhedralConvexCone:
 
 
 def _given(normal: Point, piece: Piece, other: Piece, parallel: float) -> Point:
-    """The normal as a facet has it, where it is one; the part's own first. Exact where a cross product is not."""
-    for given in (*piece, *(-facet for facet in other)):
-        if np.linalg.norm(unit_normal(given) - normal) <= 3 * parallel:
-            return given
-    return normal
+    """The normal as the nearest facet has it, where it is one; of equals the part's own. Products are not exact."""
+    given = [*piece, *(-facet for facet in other)]
+    off = [float(np.linalg.norm(unit_normal(facet) - normal)) for facet in given]
+    nearest = int(np.argmin(off))
+    if off[nearest] > 3 * parallel:
+        return normal
+    return next(facet for facet, its in zip(given, off, strict=True) if its <= off[nearest] + _EXACT.tie)
 
 
 def _without_contained(

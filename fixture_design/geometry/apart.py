@@ -7,11 +7,12 @@ import numpy as np
 from fixture_design.arrays import Weights
 from fixture_design.geometry.broad import box_pairs, boxes_of
 from fixture_design.geometry.features import EdgeEnds, Features
+from fixture_design.geometry.shapes import Vector3
 
 
-def nearest_distance(part: Features, body: Features) -> float:
-    """The distance between two solids that do not touch [m]: from vertices to surfaces, and between edges."""
-    best = np.inf
+def nearest_place(part: Features, body: Features) -> tuple[float, Vector3]:
+    """The distance between two solids that do not touch [m], and where: vertices to surfaces, and between edges."""
+    best, place = np.inf, part.geometry.vertices[0]
     for mine, theirs in ((part, body), (body, part)):
         # a vertex is no nearer to the other solid than to its box
         points = mine.geometry.vertices
@@ -19,10 +20,15 @@ def nearest_distance(part: Features, body: Features) -> float:
         for index in np.argsort(bounds, kind="stable").tolist():
             if bounds[index] >= best:
                 break
-            best = min(best, abs(theirs.geometry.surface.at(points[index])[0]))
+            distance = abs(theirs.geometry.surface.at(points[index])[0])
+            if distance < best:
+                best, place = distance, points[index]
     one, other = box_pairs(boxes_of(part.edges), boxes_of(body.edges), best)
     between = _between(part.edges[one], body.edges[other])
-    return float(min(best, between.min(initial=np.inf)))
+    if len(between) and between.min() < best:
+        nearest = int(between.argmin())
+        best, place = between[nearest], part.edges[one[nearest]].mean(axis=0)
+    return float(best), place
 
 
 def _between(first: EdgeEnds, second: EdgeEnds) -> Weights:

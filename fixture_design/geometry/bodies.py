@@ -11,7 +11,7 @@ from fixture_design.arrays import read_only
 from fixture_design.contacts import Contact
 from fixture_design.contacts.polyhedral import matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
-from fixture_design.geometry.apart import nearest_distance
+from fixture_design.geometry.apart import nearest_place
 from fixture_design.geometry.features import Features
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.local import facets_at, feature_name
@@ -66,8 +66,14 @@ def contacts_of_body(
     touches = touches_between(mine, theirs, surface_gap)
     notes = tuple(f"body {body.name!r}: {note}" for note in placed.read_notes)
     if not touches:
-        distance = format_length(nearest_distance(mine, theirs))
-        return (), (*notes, f"body {body.name!r} does not touch the part: it is {distance} away")
+        distance, place = nearest_place(mine, theirs)
+        if distance <= surface_gap:
+            at = np.round(part.pose.points(place[None])[0], 6).tolist()
+            text = f"body {body.name!r} touches the part near {at} m, in no way that contacts can be made of"
+            raise UnsupportedError(
+                text, expected=f"contact on facets, edges or apices, or a clearance above {surface_gap:g} m"
+            )
+        return (), (*notes, f"body {body.name!r} does not touch the part: it is {format_length(distance)} away")
     return _named(body, part.pose, touches, friction), notes
 
 

@@ -19,7 +19,7 @@ from fixture_design.contacts.friction import tangents
 from fixture_design.contacts.polyhedral import matching
 from fixture_design.geometry.shapes import Vector3
 from fixture_design.geometry.touch import Touch
-from fixture_design.tolerances import COPLANAR_ANGLE
+from fixture_design.tolerances import COPLANAR_ANGLE, SQUARED_ANGLE
 
 #: Points in the coordinates of a plane [m].
 _InPlane = Float[np.ndarray, "n 2"]
@@ -40,7 +40,7 @@ class _Patch:
 
     def excludes(self, point: Vector3, clause: Clause, gap: float, blur: float) -> bool:
         """Whether one of the normals is excluded at a point already."""
-        if not any(np.linalg.norm(unit_normal(normal) - self.normal) <= COPLANAR_ANGLE for normal in clause):
+        if not any(np.linalg.norm(unit_normal(normal) - self.normal) <= SQUARED_ANGLE for normal in clause):
             return False
         if abs((point - self.touches[0].point) @ self.normal) > gap:
             return False
@@ -88,7 +88,7 @@ def _planes(touches: Sequence[Touch], gap: float) -> list[list[Touch]]:
         normal = unit_normal(touch.clauses[0][0])
         height = float(touch.point @ normal)
         for group, (known, level) in zip(groups, keys, strict=True):
-            if np.linalg.norm(normal - known) <= COPLANAR_ANGLE and abs(float(touch.point @ known) - level) <= gap:
+            if np.linalg.norm(normal - known) <= SQUARED_ANGLE and abs(float(touch.point @ known) - level) <= gap:
                 group.append(touch)
                 break
         else:

@@ -1,8 +1,10 @@
 """How deep two solids are in each other, by their true surfaces: vertices inside, and edges that pierce faces.
 
 Where two polyhedra overlap, an edge of one pierces a face of the other, or one lies wholly inside the other. So depth
-is looked for at vertices and along the pieces into which piercings cut the edges. Facets that stand for round surfaces
-may cut into each other where the surfaces themselves only touch.
+is looked for at vertices and along the pieces into which piercings cut the edges. Where faces
+lie in each other neither may be: then `separation` looks just below the triangles. Facets that stand for round surfaces
+may cut into each other where the surfaces themselves only touch, and reach less deep than these: what is round is
+judged by its true surface.
 """
 
 from __future__ import annotations
@@ -17,7 +19,11 @@ from fixture_design.geometry.features import EdgeEnds, Features
 from fixture_design.geometry.local import facets_at
 from fixture_design.geometry.nearest import touched_triangles
 from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.round_meeting import round_on_flat, round_outside_round, sharp_on_round
+from fixture_design.geometry.separation import Solid, separation
 from fixture_design.geometry.shapes import Corners, Directions, Vector3
+from fixture_design.geometry.smooth_surface import SmoothSurface
+from fixture_design.layout import Pose
 
 #: Where on a piece of an edge its depth is measured, between 0 and 1.
 _STATIONS = (0.125, 0.25, 0.5, 0.75, 0.875)
@@ -35,28 +41,73 @@ class Penetration:
 def deepest(part: Features, body: Features, gap: float) -> Penetration | None:
     """The deepest overlap beyond ``gap`` that was found; None if there is none."""
     worst: Penetration | None = None
+    most = sum(max((s.sagitta for s in side.geometry.smooth_surfaces), default=0.0) for side in (part, body))
     for number, (mine, theirs) in enumerate(((part, body), (body, part))):
-        low, high = theirs.geometry.low + gap, theirs.geometry.high - gap
+        low, high = theirs.geometry.low + gap - most, theirs.geometry.high - gap + most
         places = np.vstack([mine.geometry.vertices, pierced_pieces(mine.all_edges, theirs.corners)])
         places = places[((places > low) & (places < high)).all(axis=1)]
         if not len(places):
             continue
-        depths = DepthField(theirs.geometry).at(places)
+        field = DepthField(theirs.geometry)
+        depths = field.at(places)
         for index in np.argsort(-depths, kind="stable").tolist():
-            if depths[index] <= max(gap, worst.depth if worst else 0.0):
+            if depths[index] + most <= max(gap, worst.depth if worst else 0.0):
                 break
-            place = places[index]
-            if depths[index] > gap + bulge(theirs.geometry, place) + bulge(mine.geometry, place):
-                worst = Penetration(float(depths[index]), place, number)
-                break
-    return worst
+            depth, place = _true_depth(mine.geometry, theirs.geometry, field, places[index])
+            if depth > max(gap, worst.depth if worst else 0.0):
+                worst = Penetration(depth, place, number)
+    found = [one for one in (worst, _sunk(part, body, gap, most)) if one]
+    return max(found, key=lambda one: one.depth) if found else _flush(part, body, gap)
+
+
+def _true_depth(mine: PartGeometry, theirs: PartGeometry, field: DepthField, place: Vector3) -> tuple[float, Vector3]:
+    """How deep a place on the facets of one solid certainly is in the other [m], and the place, by true surfaces."""
+    errors = 0.0
+    for surface in _surfaces_at(mine, place):
+        if surface is not None:
+            place, errors = surface.project(place), errors + surface.error
+    surfaces = _surfaces_at(theirs, place)
+    depths = [-surface.distance(place) - surface.error for surface in surfaces if surface is not None]
+    if None in surfaces:
+        depths.append(float(field.at(place[None])[0]))
+    return min(depths) - errors, place
+
+
+def _sunk(part: Features, body: Features, gap: float, most: float) -> Penetration | None:
+    """The deepest place where a convex round surface is in a face or edge by less than its facets are off it."""
+    if most == 0:
+        return None
+    found: list[Penetration] = []
+    for number, (mine, theirs) in enumerate(((part, body), (body, part))):
+        places = [*round_on_flat(mine, theirs, gap + most), *sharp_on_round(mine, theirs, gap + most)]
+        if number == 0:
+            places += round_outside_round(mine, theirs, gap + most)
+        found += [Penetration(-place.distance, place.point, number) for place in places]
+    # fitted surfaces are known to within their errors
+    errors = sum(max((s.error for s in side.geometry.smooth_surfaces), default=0.0) for side in (part, body))
+    worst = max(found, key=lambda one: one.depth, default=None)
+    return worst if worst and worst.depth > gap + errors else None
+
+
+def _flush(part: Features, body: Features, gap: float) -> Penetration | None:
+    """An overlap of solids whose faces lie in each other's, where no edge pierces a face."""
+    found = separation(Solid.of(part.geometry), Solid.of(body.geometry), Pose.identity(3), limit=-gap)
+    if found.point is None:
+        return None
+    depth = -found.distance - bulge(part.geometry, found.point) - bulge(body.geometry, found.point)
+    return Penetration(-found.distance, found.point, 0) if depth > gap else None
+
+
+def _surfaces_at(geometry: PartGeometry, point: Vector3) -> list[SmoothSurface | None]:
+    """The round surfaces whose facets are nearest to a point, each once; None for plane facets."""
+    _, nearest = geometry.surface.at(point)
+    facets = facets_at(geometry, touched_triangles(geometry, nearest, geometry.on_edge))
+    return list({id(s): s for s in map(geometry.surface_of_facet, facets.tolist())}.values())
 
 
 def bulge(geometry: PartGeometry, point: Vector3) -> float:
     """How far the true surface nearest to a point may be from the facets that stand for it [m]; 0 for plane facets."""
-    _, nearest = geometry.surface.at(point)
-    facets = facets_at(geometry, touched_triangles(geometry, nearest, geometry.on_edge))
-    surfaces = [geometry.surface_of_facet(facet) for facet in facets.tolist()]
+    surfaces = _surfaces_at(geometry, point)
     return max((surface.sagitta + surface.error for surface in surfaces if surface is not None), default=0.0)
 
 

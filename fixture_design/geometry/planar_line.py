@@ -10,7 +10,7 @@ from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry.local import LocalSurface
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.geometry.tip_touch import TipTouch
-from fixture_design.tolerances import ALONG_NORMAL
+from fixture_design.tolerances import ALONG_NORMAL, COPLANAR_ANGLE
 
 
 def planar_line_touches(
@@ -58,11 +58,16 @@ def _on_side(
     unit = unit_normal(normal)
     _check_clear(polygon, local, p_PC, length, direction, unit, gap)
     starts, ends = polygon.vertices - p_PC, np.roll(polygon.vertices, -1, axis=0) - p_PC
-    in_line = (np.abs(starts @ unit) <= polygon.precision) & (np.abs(ends @ unit) <= polygon.precision)
+    # sides that count as one turn by up to the angle within which they are merged
+    reach = np.maximum(np.abs(starts @ direction), np.abs(ends @ direction))
+    off = np.maximum(polygon.precision, np.minimum(gap, COPLANAR_ANGLE * reach))
+    in_line = (np.abs(starts @ unit) <= off) & (np.abs(ends @ unit) <= off)
     # counter-clockwise, a side with this outward normal runs along it turned by a right angle
     in_line &= (ends - starts) @ np.array([-unit[1], unit[0]]) > 0
     places = np.sort(np.column_stack([starts[in_line] @ direction, ends[in_line] @ direction]), axis=1)
     places = places[(places[:, 1] > -length / 2) & (places[:, 0] < length / 2)]
+    if not len(places):
+        raise GeometryError(f"no side lies along a line at {local.feature}", expected="a centre on a straight side")
     low, high = max(float(places[:, 0].min()), -length / 2), min(float(places[:, 1].max()), length / 2)
     return tuple(
         TipTouch(p_PC + place * direction, ((normal,),), local.provenance, local.feature) for place in (low, high)

@@ -45,6 +45,11 @@ class RoundPlace:
     other_name: str
     error: float
 
+    @property
+    def distance(self) -> float:
+        """Along the normal, negative where the solids overlap [m]."""
+        return float((self.other - self.point) @ self.normal)
+
 
 def round_on_flat(mine: Features, theirs: Features, gap: float) -> Iterator[RoundPlace]:
     """Where convex round surfaces of one solid touch plane facets of the other.
@@ -68,6 +73,17 @@ def round_on_round(mine: Features, theirs: Features, gap: float) -> Iterator[Rou
     for surface in mine.geometry.smooth_surfaces:
         for other in theirs.geometry.smooth_surfaces:
             if (surface.hollow and other.hollow) or not {surface.kind, other.kind} <= {"cylinder", "sphere"}:
+                continue
+            yield from _on_round(
+                surface, _round_sheet(mine, surface, gap), other, _round_sheet(theirs, other, gap), gap
+            )
+
+
+def round_outside_round(mine: Features, theirs: Features, gap: float) -> Iterator[RoundPlace]:
+    """Of `round_on_round` the places of two convex surfaces."""
+    for surface in mine.geometry.smooth_surfaces:
+        for other in theirs.geometry.smooth_surfaces:
+            if surface.hollow or other.hollow or not {surface.kind, other.kind} <= {"cylinder", "sphere"}:
                 continue
             yield from _on_round(
                 surface, _round_sheet(mine, surface, gap), other, _round_sheet(theirs, other, gap), gap
@@ -183,6 +199,10 @@ def _on_round(
     # hollow radii count negative: sums tell how far apart the centres of surfaces that touch are
     apart = _radius(surface) + _radius(other)
     error = max(surface.normal_error, other.normal_error)
+    if cylinders and not parallel:
+        # the normal is the cross product of the axes
+        sine = float(np.linalg.norm(np.cross(surface.axis, other.axis)))
+        error = (surface.normal_error + other.normal_error) / sine
     if nested and max(distance, abs(apart)) <= allowed:
         if not parallel:
             text = f"{surface.name} and {other.name} fit each other: balls that fill bores or sockets are not evaluated"

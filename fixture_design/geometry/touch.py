@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Point, Rows, cross_products
 from fixture_design.contacts import Clause, Provenance, unit_normal
 from fixture_design.contacts.polyhedral import polyhedral_clauses
 from fixture_design.geometry.local import LocalSurface, facets_at, local_surface
@@ -15,7 +15,7 @@ from fixture_design.geometry.nearest import touched_triangles
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.round_meeting import RoundPlace
 from fixture_design.geometry.shapes import Vector3
-from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
+from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT, SQUARED_ANGLE
 
 #: How far off a wall it is looked for material, in widths of an edge [-].
 _STEP_OFF = 10.0
@@ -74,6 +74,8 @@ class Tangents:
         if not clauses:
             return None
         provenance = mine.provenance if _all_of(clauses, mine) else _worse(mine.provenance, theirs.provenance)
+        doubt = max(provenance.normal_error, _turn(clauses, mine, theirs), _crossing_error(clauses, mine, theirs))
+        provenance = replace(provenance, normal_error=doubt)
         if provenance.normal_error <= DEFAULT.zero:
             # what placing the body has rounded; every tie covers that
             provenance = replace(provenance, normal_error=0.0)
@@ -140,6 +142,54 @@ def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
 def _worse(first: Provenance, second: Provenance) -> Provenance:
     doubtful = max((first, second), key=lambda provenance: _DOUBT.index(provenance.kind))
     return replace(doubtful, normal_error=max(first.normal_error, second.normal_error))
+
+
+def _turn(clauses: tuple[Clause, ...], mine: LocalSurface, theirs: LocalSurface) -> float:
+    """How far apart normals are that were taken for one another [rad]; 0 within what a pose's digits may leave."""
+    given = _facing(mine, theirs)
+    within = 3 * COPLANAR_ANGLE + mine.provenance.normal_error + theirs.provenance.normal_error
+    off = np.array([np.linalg.norm(given - unit_normal(normal), axis=1) for clause in clauses for normal in clause])
+    worst = float(np.where(off <= within, off, 0.0).max())
+    return worst if worst > SQUARED_ANGLE else 0.0
+
+
+def _facing(mine: LocalSurface, theirs: LocalSurface) -> Rows:
+    """The unit normals of both sides, those of the other one reversed."""
+    own = [unit_normal(normal) for clause in mine.clauses for normal in clause]
+    return np.array([*own, *(-unit_normal(normal) for clause in theirs.clauses for normal in clause)])
+
+
+def _crossing_error(clauses: tuple[Clause, ...], mine: LocalSurface, theirs: LocalSurface) -> float:
+    """Error of the normals that are cross products of edges [rad].
+
+    An edge is off by the errors of its facets over the sine of the angle between them, the product by those of both
+    edges over the sine of the angle at which they cross.
+    """
+    if mine.provenance.normal_error == theirs.provenance.normal_error == 0:
+        return 0.0
+    given, worst = _facing(mine, theirs), 0.0
+    for normal in (unit_normal(normal) for clause in clauses for normal in clause):
+        if np.linalg.norm(given - normal, axis=1).min() <= COPLANAR_ANGLE:
+            continue
+        for edge, error in _edges_of(mine):
+            for other, other_error in _edges_of(theirs):
+                product = cross_products(edge, other)
+                sine = float(np.linalg.norm(product))
+                if sine > COPLANAR_ANGLE and abs(float(product @ normal)) >= (1 - COPLANAR_ANGLE) * sine:
+                    worst = max(worst, (error + other_error) / sine)
+    return worst
+
+
+def _edges_of(surface: LocalSurface) -> list[tuple[Vector3, float]]:
+    """Unit directions of the lines in which facets at a point meet, and their errors [rad]."""
+    units = [unit_normal(normal) for clause in surface.clauses for normal in clause]
+    edges = []
+    for first, second in combinations(units, 2):
+        line = cross_products(first, second)
+        sine = float(np.linalg.norm(line))
+        if sine > COPLANAR_ANGLE:
+            edges.append((line / sine, 2 * surface.provenance.normal_error / sine))
+    return edges
 
 
 def _snapped(surface: LocalSurface, other: LocalSurface) -> tuple[tuple[Point, ...], ...]:

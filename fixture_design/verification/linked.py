@@ -14,7 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import islice, product
+from math import prod
 
 from fixture_design.analysis import Restraint
 from fixture_design.arrays import Point
@@ -35,6 +36,11 @@ _CLOSING = ("deterministic", "form_closure", "force_closure")
 _WHY = "convex edges touch along parallel convex edges: {} if every point of these may take another face, else {}"
 
 
+_DIFFER = "the two ends of a segment along which convex edges touch have different alternatives"
+
+_MANY = f"convex edges touch along parallel convex edges: more than {MAX_CHOICES} choices, and the first settle nothing"
+
+
 def bracketed(
     outer: Findings,
     contacts: Sequence[Contact],
@@ -51,13 +57,25 @@ def bracketed(
     open_ones = {name: questions[name] for name, finding in outer.items() if not _stands(name, finding.answer)}
     if not open_ones:
         return dict(outer)
-    choices = _choices(contacts)
+    segments = _segments(contacts)
+    if segments is None:
+        return _left_open(outer, list(open_ones))
+    choices = _choices(segments)
     inner: dict[str, list[Finding]] = {name: [] for name in open_ones}
     for choice in choices:
         restraint = Restraint.of([_chosen(contact, choice) for contact in contacts], report, tolerances)
         for name, question in open_ones.items():
             inner[name].append(_with_choice(question(restraint), choice))
-    return dict(outer) | {name: _settled(name, outer[name], found) for name, found in inner.items()}
+    many = prod(len(segment) for segment in segments) > MAX_CHOICES
+    return dict(outer) | {name: _settled(name, outer[name], found, many) for name, found in inner.items()}
+
+
+def _left_open(outer: Findings, names: Sequence[str]) -> dict[str, Finding]:
+    """Undecided is what the outer set does not settle."""
+    return dict(outer) | {
+        name: replace(outer[name], answer=Answer.UNDECIDED, evidence=None, residual=None, reason=_DIFFER)
+        for name in names
+    }
 
 
 def _stands(name: str, answer: Answer | None) -> bool:
@@ -65,7 +83,7 @@ def _stands(name: str, answer: Answer | None) -> bool:
     return answer is (Answer.YES if name in _CLOSING else Answer.NO)
 
 
-def _settled(name: str, outer: Finding, inner: Sequence[Finding]) -> Finding:
+def _settled(name: str, outer: Finding, inner: Sequence[Finding], many: bool) -> Finding:
     """The inner set's finding if it answers; else undecided."""
     wanted = Answer.NO if name in _CLOSING else Answer.YES
     for finding in inner:
@@ -73,33 +91,39 @@ def _settled(name: str, outer: Finding, inner: Sequence[Finding]) -> Finding:
             return finding
     if outer.answer is Answer.UNDECIDED:
         return outer
-    return replace(outer, answer=Answer.UNDECIDED, evidence=None, residual=None, reason=_why(name))
+    return replace(outer, answer=Answer.UNDECIDED, evidence=None, residual=None, reason=_MANY if many else _why(name))
 
 
 def _why(name: str) -> str:
     return _WHY.format(*(("no", "yes") if name in _CLOSING else ("yes", "no")))
 
 
-def _choices(contacts: Sequence[Contact]) -> list[dict[str, int]]:
-    """For each linked contact the alternative taken, the same at both ends of a segment; none if there are too many."""
+def _segments(contacts: Sequence[Contact]) -> list[list[dict[str, int]]] | None:
+    """For each segment the choices of the same alternative at both ends; None if its ends have not the same ones."""
     by_name = {contact.name: contact for contact in contacts}
     segments: list[list[dict[str, int]]] = []
-    count = 1
     for contact in contacts:
         other = by_name.get(contact.linked or "")
-        if other is None or other.name in {name for segment in segments for name in segment[0]}:
+        if other is None or any(other.name in segment[0] for segment in segments):
             continue
+        if len(contact.clauses) != 1 or len(other.clauses) != 1:
+            return None
         (mine,), (theirs,) = contact.clauses, other.clauses
+        if not matching(mine, theirs, COPLANAR_ANGLE):
+            return None
         segments.append(
             [
                 {contact.name: index, other.name: next(k for k, n in enumerate(theirs) if _same(n, normal))}
                 for index, normal in enumerate(mine)
             ]
         )
-        count *= len(mine)
-        if count > MAX_CHOICES:
-            return []
-    return [{name: index for part in parts for name, index in part.items()} for parts in product(*segments)]
+    return segments
+
+
+def _choices(segments: Sequence[list[dict[str, int]]]) -> list[dict[str, int]]:
+    """For each linked contact the alternative taken; the first ones, if there are too many."""
+    first = islice(product(*segments), MAX_CHOICES)
+    return [{name: index for part in parts for name, index in part.items()} for parts in first]
 
 
 def _same(first: Point, second: Point) -> bool:
@@ -109,7 +133,8 @@ def _same(first: Point, second: Point) -> bool:
 def _chosen(contact: Contact, choice: Mapping[str, int]) -> Contact:
     if contact.name not in choice:
         return contact
-    return replace(contact, clauses=((contact.clauses[0][choice[contact.name]],),))
+    # no rule may count both ends as one facet: what a checker sees has alternatives
+    return replace(contact, clauses=((contact.clauses[0][choice[contact.name]],),), feature=None)
 
 
 def _with_choice(finding: Finding, choice: Mapping[str, int]) -> Finding:

@@ -275,3 +275,54 @@ def test_dowel_given_as_a_cylinder_touches_along_its_exact_line(tmp_path: Path, 
     found = contacts(layout_of(cube, body(dowel, Pose.from_xyz_rpy([-0.025, 0.004, 0.01], [0, 0, 0.3]))))
     np.testing.assert_allclose([c.point for c in found], [[-0.02, 0.004, -0.005], [-0.02, 0.004, 0.02]], atol=1e-9)
     assert normals(found) == {(-1.0, 0.0, 0.0)}
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "depth"),
+    [
+        ([-0.03, 0.01, -0.02], [0.03, 0.06, 0.02], 0.01),
+        ([-0.01, 0.01, -0.02], [0.01, 0.06, 0.02], 0.01),
+        ([-0.02, -0.02, -0.02], [0.02, 0.02, 0.02], 0.02),
+        ([-0.002, -0.2, -0.02], [0.002, 0.2, 0.02], 0.02),
+    ],
+    ids=["wider jaw", "narrower jaw", "the same", "bar through it"],
+)
+def test_flush_overlap_is_penetration(
+    tmp_path: Path, cube: Part, low: list[float], high: list[float], depth: float
+) -> None:
+    """Faces in each other's planes: no edge pierces a face."""
+    with pytest.raises(PenetrationError) as caught:
+        contacts(layout_of(cube, body(boxes(tmp_path, "intruder", (low, high)))))
+    assert depth / 4 < caught.value.depth <= 1.01 * depth
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.0654])
+def test_a_shaft_sunk_by_less_than_its_facets_are_off_it_is_judged_by_its_surface(
+    tmp_path: Path, turned: float
+) -> None:
+    """48 strips of a 15 mm shaft are 32 um off it; it may be sunk 10 um, and rests on vertices or on a strip."""
+    shaft = part(write(tmp_path, along_y(prism(circle(0.015, 48), 0.05)), "shaft.obj"))
+    floor = boxes(tmp_path, "floor", ([-0.05, -0.1, -0.02], [0.05, 0.1, 0.0]))
+    for sunk in (8e-6, 12e-6, 25e-6, 60e-6):
+        pose = Pose.from_xyz_rpy([0, 0, 0.015 - sunk], [0, turned, 0])
+        layout = layout_of(replace(shaft, pose=pose), body(floor))
+        if sunk <= 1e-5:
+            assert len(contacts(layout)) == 2
+            continue
+        with pytest.raises(PenetrationError) as caught:
+            contacts(layout)
+        # deeper than facets are off it a vertex is found, which may be that much higher
+        low = sunk if sunk < 4e-5 else sunk - 3.3e-5
+        assert 0.99 * low <= caught.value.depth <= 1.01 * sunk
+
+
+def test_jaws_that_all_but_face_each_other_are_no_certain_no(tmp_path: Path, cube: Part) -> None:
+    """Each leans open by 0.2 mrad, within the gap all over: what is that near may be parallel or not."""
+    jaw = boxes(tmp_path, "jaw", ([-0.02, -0.03, -0.015], [0, 0.03, 0.015]))
+    left = body(jaw, Pose.from_xyz_rpy([-0.02, 0, 0], [0, -2e-4, 0]))
+    right = replace(body(jaw, Pose.from_xyz_rpy([0.02, 0, 0], [0, -2e-4, np.pi])), name="right")
+    layout = layout_of(cube, left, right)
+    for contact in contacts(layout):
+        off = min(np.linalg.norm(unit(n) - s * np.array([1, 0, 0])) for n in contact.normals for s in (-1, 1))
+        assert contact.provenance.normal_error >= off or off > 1e-4
+    assert answers(layout)["strongly_accessible"] != "no"

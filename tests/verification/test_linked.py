@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -72,3 +73,26 @@ def test_unlinked_ends_are_taken_as_they_stand() -> None:
     contacts = [Contact(c.name, c.role, c.point, c.clauses) for c in segment()]
     verdict = group_verdict(Group("all", (*contacts, *all_but_turning_and_sinking()), ()), SCALE, [], DEFAULT)
     assert verdict.findings["form_closure"].answer is Answer.NO
+
+
+def test_ends_with_one_feature_are_two_contacts_to_the_checker() -> None:
+    named = [replace(contact, feature="edge on edge") for contact in segment()]
+    assert verdict_of(named).findings["form_closure"].answer is Answer.NO
+
+
+def test_ends_with_other_alternatives_leave_the_answer_open() -> None:
+    first, second = segment()
+    differing = [first, replace(second, clauses=((X - 2 * Z, -X - 2 * Z),))]
+    finding = verdict_of([*differing, *all_but_turning_and_sinking()]).findings["form_closure"]
+    assert finding.answer is Answer.UNDECIDED
+    assert "different alternatives" in (finding.reason or "")
+
+
+def test_many_segments_still_have_their_first_choices() -> None:
+    """Seven ridges have 128 choices; the part lifts off by any of them."""
+    many = [
+        replace(end, name=f"{k}{end.name}", linked=f"{k}{end.linked}", point=end.point + k * X)
+        for k in range(7)
+        for end in segment()
+    ]
+    assert verdict_of(many).findings["strongly_accessible"].answer is Answer.YES
