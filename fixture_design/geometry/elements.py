@@ -49,7 +49,7 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     part = layout.part
     if part is None:
         place = layout.places.get(("elements", layout.elements[0].name)) if layout.elements else None
-        problem = "there are elements or bodies but no part for them to touch"
+        problem = f"there are {'elements' if layout.elements else 'bodies'} but no part for them to touch"
         raise InputError(problem, source=layout.source, place=place, expected="part: ...")
     if (part.kind == "polygon") != (layout.space == "planar"):
         problem = f"part {part.name!r} does not fit a {layout.space} layout"

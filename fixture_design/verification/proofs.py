@@ -130,7 +130,21 @@ def motion_fault(evidence: Motion, case: Case, *, strict: bool, friction: bool, 
         ),
         default=-1.0,
     )
+    # points between two linked ends are only kept out if one alternative holds at both
+    for first, second in _linked_pairs(case):
+        works = [
+            max(_work(end, normal, motion, case, friction, nominal) for end in (first, second))
+            for normal in first.clauses[0]
+        ]
+        worst = max(worst, min(works))
     return None if worst <= (-case.limit if strict else case.limit) else f"the motion is not admissible: {worst:.1e}"
+
+
+def _linked_pairs(case: Case) -> list[tuple[Contact, Contact]]:
+    """The two ends of every segment along which convex edges touch, each pair once."""
+    by_name = {contact.name: contact for contact in case.contacts}
+    pairs = [(contact, by_name[contact.linked]) for contact in case.contacts if contact.linked in by_name]
+    return [pair for pair in pairs if pair[0].name < pair[1].name]
 
 
 def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyramids | None) -> str | None:

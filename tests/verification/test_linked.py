@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from fixture_design.contacts import Contact, Scale
-from fixture_design.layout import Answer, Group, GroupVerdict
+from fixture_design.layout import Answer, Group, GroupVerdict, Motion
 from fixture_design.tolerances import DEFAULT
 from fixture_design.verification.checker import check_group
+from fixture_design.verification.proofs import Case, motion_fault
 from fixture_design.verification.verify import group_verdict
 
 SCALE = Scale(np.zeros(3), 1.0)
@@ -96,3 +97,10 @@ def test_many_segments_still_have_their_first_choices() -> None:
         for end in segment()
     ]
     assert verdict_of(many).findings["strongly_accessible"].answer is Answer.YES
+
+
+def test_a_motion_that_leaves_the_ends_by_different_faces_is_no_proof() -> None:
+    turning = Motion(np.array([0, 0, -0.1, 0, 0, 1.0]), 0.0)
+    unlinked = [replace(contact, linked=None) for contact in segment()]
+    assert motion_fault(turning, Case(unlinked, 6), strict=False, friction=False) is None
+    assert motion_fault(turning, Case(segment(), 6), strict=False, friction=False) is not None
