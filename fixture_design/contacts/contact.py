@@ -43,6 +43,12 @@ class Provenance:
     kind: Literal["exact", "fitted", "approximate"] = "exact"
     normal_error: float = 0.0
 
+    @staticmethod
+    def worst(origins: Sequence[Provenance]) -> Provenance:
+        """The least certain kind of some origins, at least one, with their largest error."""
+        doubtful = max(origins, key=lambda origin: ("exact", "fitted", "approximate").index(origin.kind))
+        return Provenance(doubtful.kind, max(origin.normal_error for origin in origins))
+
 
 @dataclass(frozen=True, eq=False)
 class Contact:

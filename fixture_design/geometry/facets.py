@@ -95,10 +95,8 @@ def facets_of(vertices: Vertices, triangles: Triangles, rounding: PerVertex, fac
     angles = _dihedral_angles(vertices, triangles, units, number)
     sizes = np.linalg.norm(normals, axis=1).tolist()
     owner_and_vertex = np.unique(np.repeat(number[votes], 3) * len(vertices) + triangles[votes].ravel())
-    used, starts = (
-        owner_and_vertex % len(vertices),
-        np.flatnonzero(np.diff(owner_and_vertex // len(vertices), prepend=-1)),
-    )
+    used = owner_and_vertex % len(vertices)
+    starts = np.flatnonzero(np.diff(owner_and_vertex // len(vertices), prepend=-1))
 
     def measured(known_to: PerVertex) -> tuple[list[FacetMeasures], tuple[Provenance, ...]]:
         widths, turns = widths_and_angles(vertices, known_to, used, starts, normals)

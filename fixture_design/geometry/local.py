@@ -20,9 +20,6 @@ from fixture_design.tolerances import SLIVER_NOISE, SMOOTH_ANGLE
 #: Facets must be this many times larger than the blur around a corner, so that looking into it sees the corner [-].
 _ROOM_TO_LOOK = 20.0
 
-#: Kinds of provenance, the best first.
-_DOUBT = ("exact", "fitted", "approximate")
-
 
 @dataclass(frozen=True, eq=False)
 class LocalSurface:
@@ -99,8 +96,7 @@ def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = No
                 raise UnsupportedError(problem, expected="a place away from small facets")
             return local_surface(geometry, p_PC, 10 * within)
         sets = _sets_by_looking(geometry, p_PF, touched, patches, name)
-    worst = max((patch.provenance for patch in patches), key=lambda origin: _DOUBT.index(origin.kind))
-    provenance = Provenance(worst.kind, max(patch.provenance.normal_error for patch in patches))
+    provenance = Provenance.worst([patch.provenance for patch in patches])
     clauses = tuple(tuple(patches[index].normal for index in chosen) for chosen in sets)
     slips = tuple(patches[index].slips for chosen in sets for index in chosen)
     return LocalSurface(clauses, name, provenance, tuple(facets.tolist()), slips)

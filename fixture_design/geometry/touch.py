@@ -19,8 +19,6 @@ from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT, SQUARED_ANGLE
 
 #: How far off a wall it is looked for material, in widths of an edge [-].
 _STEP_OFF = 10.0
-#: Kinds of provenance, from the best to the worst.
-_DOUBT = ("exact", "fitted", "approximate")
 #: Sine up to which a normal is that of a round surface there: points are off it by what its facets are [-].
 _SAME_ROUND = 1e-3
 
@@ -73,7 +71,9 @@ class Tangents:
         clauses = tuple(c for c in clauses or () if not all(_among(c, side) for side in round_sides))
         if not clauses:
             return None
-        provenance = mine.provenance if _all_of(clauses, mine) else _worse(mine.provenance, theirs.provenance)
+        provenance = (
+            mine.provenance if _all_of(clauses, mine) else Provenance.worst([mine.provenance, theirs.provenance])
+        )
         doubt = max(provenance.normal_error, _turn(clauses, mine, theirs), _crossing_error(clauses, mine, theirs))
         provenance = replace(provenance, normal_error=doubt)
         if provenance.normal_error <= DEFAULT.zero:
@@ -137,11 +137,6 @@ def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
     """Whether all normals are the surface's own: then those of the other side, and their errors, play no part."""
     own = {id(normal) for clause in surface.clauses for normal in clause}
     return all(id(normal) in own for clause in clauses for normal in clause)
-
-
-def _worse(first: Provenance, second: Provenance) -> Provenance:
-    doubtful = max((first, second), key=lambda provenance: _DOUBT.index(provenance.kind))
-    return replace(doubtful, normal_error=max(first.normal_error, second.normal_error))
 
 
 def _turn(clauses: tuple[Clause, ...], mine: LocalSurface, theirs: LocalSurface) -> float:
