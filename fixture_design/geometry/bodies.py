@@ -107,6 +107,8 @@ def touches_between(part: Features, body: Features, gap: float) -> tuple[Touch, 
         text = f"{part.geometry.name!r} and {body.geometry.name!r} meet in {len(pairs.part)} places"
         raise UnsupportedError(text, expected=f"at most {MOST_PLACES}; a coarser mesh where they touch")
     tangents = Tangents(part.geometry, body.geometry)
+    tangents.expect(pairs.part, pairs.body)
+    tangents.expect(segments.part.mean(axis=1), segments.body.mean(axis=1))
     touches: list[Touch] = []
     for start, other_start in zip(segments.part, segments.body, strict=True):
         touches += _along(tangents, start, other_start)
