@@ -98,6 +98,9 @@ def _in_hole(
     center = hole.point + ((p_PA - hole.point) @ hole.axis) * hole.axis
     x, y = tangents(hole.axis)
     arcs = _arcs(geometry, hole, p_PA, x, y)
+    if not arcs:
+        place = place_text(p_PA)
+        raise GeometryError(f"{hole.name} has no wall at the height of the pin at {place} (part frame)")
     whole = sum(end - start for start, end in arcs) > 2 * np.pi - _SEAM
     if along is not None:
         angle = float(np.arctan2(along @ y, along @ x))
