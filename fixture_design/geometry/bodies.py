@@ -12,7 +12,7 @@ from fixture_design.contacts import Contact
 from fixture_design.contacts.polyhedral import matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
 from fixture_design.geometry.apart import nearest_place
-from fixture_design.geometry.features import Features
+from fixture_design.geometry.features import Features, features_of
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.local import facets_at, feature_name
 from fixture_design.geometry.meeting import meeting_points, running_edges
@@ -61,7 +61,7 @@ def contacts_of_body(
 ) -> tuple[tuple[Contact, ...], tuple[str, ...]]:
     """The contacts of one body and notes about it; see `contacts_of_bodies`."""
     placed = placed_geometry(body, part.pose)
-    mine, theirs = Features(geometry), Features(placed)
+    mine, theirs = features_of(geometry), Features(placed)
     _check_room(body, part, mine, theirs, surface_gap)
     touches = touches_between(mine, theirs, surface_gap)
     notes = tuple(f"body {body.name!r}: {note}" for note in placed.read_notes)

@@ -16,7 +16,7 @@ from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
 from fixture_design.geometry.surface import SolidSurface, Surface
-from fixture_design.layout import Element, Layout, Part, Pose
+from fixture_design.layout import Element, Layout, Part, PinTip, Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +68,12 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
 
 
 def _surface_near(elements: Sequence[Element], geometry: PartGeometry, X_WP: Pose) -> SolidSurface:
-    """The part's surface, looked at where its elements should touch; points that are none are left to `contacts_on`."""
-    places = [at for element in elements if (at := np.asarray(element.at)).shape == (3,) and np.isfinite(at).all()]
+    """The part's surface, looked at where its elements should touch; points that are none are left to `contacts_on`.
+
+    Pins are in the middle of holes, and touch around them.
+    """
+    asked = [np.asarray(element.at) for element in elements if not isinstance(element.tip, PinTip)]
+    places = [at for at in asked if at.shape == (3,) and np.isfinite(at).all()]
     return SolidSurface.near(geometry, X_WP.inverse().points(np.array(places, dtype=np.float64).reshape(-1, 3)))
 
 

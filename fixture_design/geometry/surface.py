@@ -58,7 +58,7 @@ class SolidSurface:
     def near(cls, geometry: PartGeometry, points: Directions) -> SolidSurface:
         """The surface, ready for questions about some points: what they touch is looked for in one go, shape (n, 3)."""
         surface = cls(geometry)
-        feet = [surface._foot(point)[1] for point in points]
+        feet = [surface.foot(point)[1] for point in points]
         touched = touched_at_each(geometry, np.array(feet).reshape(-1, 3), surface.precision)
         surface._touched.update((foot.tobytes(), found) for foot, found in zip(feet, touched, strict=True))
         return surface
@@ -77,8 +77,8 @@ class SolidSurface:
 
     def nearest(self, p_PQ: Point) -> tuple[float, Point]:
         """As Drake measures it to the facets; where these stand for a round surface, to that, if it is nearer."""
-        distance, p_PF = self._foot(p_PQ)
-        surfaces = {self.geometry.surface_of_facet(f) for f in facets_at(self.geometry, self._at(p_PF)).tolist()}
+        distance, p_PF = self.foot(p_PQ)
+        surfaces = {self.geometry.surface_of_facet(f) for f in self.facets_at(p_PF).tolist()}
         surface = next(iter(surfaces)) if len(surfaces) == 1 else None
         if surface is None:
             return distance, p_PF
@@ -90,7 +90,7 @@ class SolidSurface:
         return local_surface(self.geometry, p_PC, touched=self._at(p_PC))
 
     def feature(self, p_PC: Point) -> str:
-        return feature_name(self.geometry, facets_at(self.geometry, self._at(p_PC)))
+        return feature_name(self.geometry, self.facets_at(p_PC))
 
     def slack(self, surface: LocalSurface) -> float:
         """Of a round surface twice the depth of its strips; of other strips of width w, tilted by e: w sin e.
@@ -106,12 +106,16 @@ class SolidSurface:
         width = max(self.geometry.facets[facet].width for facet in surface.facets)
         return width * float(np.sin(min(surface.provenance.normal_error, np.pi / 2)))
 
-    def _foot(self, p_PQ: Point) -> tuple[float, Point]:
-        """As Drake measures it to the facets."""
+    def foot(self, p_PQ: Point) -> tuple[float, Point]:
+        """Signed distance and nearest point as Drake measures it, to the facets."""
         key = p_PQ.tobytes()
         if key not in self._feet:
             self._feet[key] = self.geometry.surface.at(p_PQ)
         return self._feet[key]
+
+    def facets_at(self, p_PF: Point) -> Indices:
+        """The facets that meet at a point of them."""
+        return facets_at(self.geometry, self._at(p_PF))
 
     def _at(self, p_PF: Point) -> Indices:
         """The triangles at a point of the facets."""

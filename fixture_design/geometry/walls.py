@@ -27,14 +27,14 @@ def is_wall(geometry: PartGeometry, p_PF: Point, touched: Indices) -> bool | Non
     own = int(shells[0])
     low, high = geometry.shell_boxes
     reach = _NEAR * geometry.on_edge
-    around = ((low <= p_PF + reach) & (high >= p_PF - reach)).all(axis=1)
-    around[own] = False
+    around = np.flatnonzero(np.all((low <= p_PF + reach) & (high >= p_PF - reach), axis=1))
+    around = around[around != own]
     within = 0.0
-    if around.any():
+    if len(around):
         near = touched_triangles(geometry, p_PF, reach)
         if (geometry.shell_of_triangle[near] != own).any():
             return None
-        others = geometry.triangles[around[geometry.shell_of_triangle]]
+        others = geometry.triangles[np.isin(geometry.shell_of_triangle, around)]
         within = float(winding_numbers(geometry.vertices, others, p_PF[None])[0])
     # the shell of a cavity runs around nothing, which it takes away from what is around it
     return bool(within - (geometry.shell_volumes[own] < 0) > 0.5)
