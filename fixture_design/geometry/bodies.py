@@ -11,7 +11,6 @@ from fixture_design.arrays import read_only
 from fixture_design.contacts import Contact
 from fixture_design.contacts.polyhedral import matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
-from fixture_design.geometry.apart import nearest_place
 from fixture_design.geometry.features import Features, features_of
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.local import facets_at, feature_name
@@ -23,6 +22,7 @@ from fixture_design.geometry.penetration import deepest
 from fixture_design.geometry.piece import SmoothPatch
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.geometry.round_meeting import round_on_flat, round_on_round, sharp_on_round
+from fixture_design.geometry.separation import separation
 from fixture_design.geometry.touch import Tangents, Touch
 from fixture_design.layout import Body, Layout, Part, Pose
 from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF
@@ -66,14 +66,15 @@ def contacts_of_body(
     touches = touches_between(mine, theirs, surface_gap)
     notes = tuple(f"body {body.name!r}: {note}" for note in placed.read_notes)
     if not touches:
-        distance, place = nearest_place(mine, theirs)
-        if distance <= surface_gap:
+        apart = separation(mine.solid, theirs.solid, Pose.identity(3))
+        if apart.distance <= surface_gap:
+            place = apart.point if apart.point is not None else geometry.box_center
             at = np.round(part.pose.points(place[None])[0], 6).tolist()
             text = f"body {body.name!r} touches the part near {at} m, in no way that contacts can be made of"
             raise UnsupportedError(
                 text, expected=f"contact on facets, edges or apices, or a clearance above {surface_gap:g} m"
             )
-        return (), (*notes, f"body {body.name!r} does not touch the part: it is {format_length(distance)} away")
+        return (), (*notes, f"body {body.name!r} does not touch the part: it is {format_length(apart.distance)} away")
     return _named(body, part.pose, touches, friction), notes
 
 

@@ -5,6 +5,9 @@ is looked for at vertices and along the pieces into which piercings cut the edge
 lie in each other neither may be: then `separation` looks just below the triangles. Facets that stand for round surfaces
 may cut into each other where the surfaces themselves only touch, and reach less deep than these: what is round is
 judged by its true surface.
+
+That is why this is not left to `separation`, which gives the deepest place on the facets: with round surfaces it need
+not be the deepest, nor be inside at all, so that all places have to be looked at.
 """
 
 from __future__ import annotations

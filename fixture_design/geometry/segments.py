@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from fixture_design.arrays import Indices, Weights
+from fixture_design.arrays import Indices, Weights, cross_products
+from fixture_design.geometry.broad import box_pairs, boxes_of
 from fixture_design.geometry.shapes import Corners, PerPoint
 
 #: The two ends of each segment.
@@ -17,33 +18,6 @@ _BEYOND = 1e-9
 #: Sine of an angle below which a segment runs in the plane of a triangle, and two segments are parallel [-].
 _PARALLEL = 1e-12
 
-#: Pairs looked at together: a few tens of megabytes.
-_AT_ONCE = 1_000_000
-
-
-def near_pairs(
-    first: Float[np.ndarray, "a c 3"], second: Float[np.ndarray, "b k 3"], within: float
-) -> tuple[Indices, Indices]:
-    """Pairs, one of each kind, whose boxes are no further apart than ``within`` [m]: two arrays of indices.
-
-    Args:
-        first, second: corners of each, shapes (a, c, 3) and (b, k, 3).
-    """
-    low, high = second.min(axis=1) - within, second.max(axis=1) + within
-    step = max(1, _AT_ONCE // max(len(second), 1))
-    ones, others = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    for start in range(0, len(first), step):
-        part = first[start : start + step]
-        mine_low, mine_high = part.min(axis=1), part.max(axis=1)
-        near = np.ones((len(part), len(second)), dtype=bool)
-        for axis in range(3):
-            near &= mine_low[:, None, axis] <= high[None, :, axis]
-            near &= mine_high[:, None, axis] >= low[None, :, axis]
-        one, other = np.nonzero(near)
-        ones.append(one + start)
-        others.append(other)
-    return np.concatenate(ones), np.concatenate(others)
-
 
 def crossings(segments: Segments, corners: Corners) -> tuple[Indices, Indices, Weights]:
     """Where segments cross triangles: for each crossing the segment, the triangle, and how far along it, 0 to 1.
@@ -51,16 +25,16 @@ def crossings(segments: Segments, corners: Corners) -> tuple[Indices, Indices, W
     A segment in the plane of a triangle does not cross it. A crossing on the edge between two triangles counts twice.
     Source: Moller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
     """
-    number, triangle = near_pairs(segments, corners, 0.0)
+    number, triangle = box_pairs(boxes_of(segments), boxes_of(corners), 0.0)
     start, along = segments[number, 0], segments[number, 1] - segments[number, 0]
     first, second = corners[triangle, 1] - corners[triangle, 0], corners[triangle, 2] - corners[triangle, 0]
-    cross = np.cross(along, second)
+    cross = cross_products(along, second)
     volume = np.einsum("ij,ij->i", first, cross)
-    size = np.linalg.norm(along, axis=1) * np.linalg.norm(np.cross(first, second), axis=1)
+    size = np.linalg.norm(along, axis=1) * np.linalg.norm(cross_products(first, second), axis=1)
     through = np.abs(volume) > _PARALLEL * size
     divisor = np.where(through, volume, 1.0)
     away = start - corners[triangle, 0]
-    turned = np.cross(away, first)
+    turned = cross_products(away, first)
     u = np.einsum("ij,ij->i", away, cross) / divisor
     v = np.einsum("ij,ij->i", along, turned) / divisor
     at = np.einsum("ij,ij->i", second, turned) / divisor

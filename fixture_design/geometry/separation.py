@@ -10,6 +10,10 @@ with the other's surface, inside the other; or, where faces and edges lie in eac
 of one that is inside both. The depth given is the largest among these witnesses. It may be less than the largest there
 is (on an edge in a convex solid it is at least half of it), so that an overlap is reported as shallower than it is, but
 a reported one is always there.
+
+`penetration` asks more than this, once for a body at rest: every place that is deeper than the gap, each judged by the
+round surfaces that facets stand for. Here facets count as they are, and one witness is enough, for thousands of poses;
+`penetration` comes here for overlaps of which it has no place. How far apart solids are is asked here alone.
 """
 
 from __future__ import annotations
@@ -18,9 +22,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Indices
+from fixture_design.arrays import Indices, cross_products
+from fixture_design.geometry.broad import box_pairs, boxes_of
 from fixture_design.geometry.part import PartGeometry
-from fixture_design.geometry.segments import Segments, crossings, near_pairs, segment_distances, stretches
+from fixture_design.geometry.segments import Segments, crossings, segment_distances, stretches
 from fixture_design.geometry.shapes import Directions, PerPoint, Vector3
 from fixture_design.geometry.sphere_tree import SphereTree, sphere_tree
 from fixture_design.layout import Pose
@@ -134,7 +139,7 @@ class _Side:
     def look_below(self, least: _Least, triangles: Indices) -> None:
         """Points below the middles of triangles that are inside both solids, at the smaller of both depths."""
         corners = self.mine.geometry.vertices[self.mine.geometry.triangles[triangles]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = cross_products(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
         # a third of the smallest height: |normal| is height times longest side
         points = corners.mean(axis=1) - normals / (3 * longest[:, None])
@@ -169,7 +174,7 @@ def _vertices_and_edges(sides: tuple[_Side, _Side], remaining: list[Indices], le
             return
     if least.distance > 0:
         moved = sides[0].pose.points(edges[0].reshape(-1, 3)).reshape(-1, 2, 3)
-        one, other = near_pairs(moved, edges[1], least.distance)
+        one, other = box_pairs(boxes_of(moved), boxes_of(edges[1]), least.distance)
         least.see(*segment_distances(moved[one], edges[1][other]))
 
 

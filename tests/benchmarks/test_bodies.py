@@ -45,7 +45,7 @@ def rough_block(triangles: int) -> PartGeometry:
     return PartGeometry("block", vertices, np.vstack(faces), np.full(len(vertices), 1e-18), faceted=True)
 
 
-@pytest.mark.parametrize("triangles", [1_000, 10_000, pytest.param(50_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("triangles", [1_000, 10_000, 50_000])
 @pytest.mark.benchmark(group="contacts of a body, warm", min_rounds=3)
 def test_contacts_of_a_nest(benchmark: Benchmark, tmp_path: Path, triangles: int) -> None:
     shapes = "".join(

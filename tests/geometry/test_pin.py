@@ -182,3 +182,15 @@ def test_a_plate_turns_about_a_single_pin(tmp_path: Path) -> None:
     assert findings["deterministic"].answer is Answer.NO
     assert findings["form_closure"].answer is Answer.NO
     assert check(verdict) == []
+
+
+def test_a_pin_between_the_walls_of_its_hole_is_refused(tmp_path: Path) -> None:
+    """Two plates with one bore each, in line: in the gap between them there is nothing to touch."""
+    lower, triangles = prism(OUTLINE, 0.004, [circle(RADIUS, 64, LEFT)])
+    count = len(lower)
+    stacked = np.vstack([lower, lower + np.array([0, 0, 0.008])]), np.vstack([triangles, triangles + count])
+    geometry = loaded(tmp_path, stacked)
+    at = np.array([*LEFT, 0.006])
+    element = Element("P1", "locator", at, PinTip(2 * RADIUS, 0.0, "round"), axis=np.array([0.0, 0, 1]))
+    with pytest.raises(GeometryError, match="no wall at the height"):
+        contacts_of_element(element, geometry, IDENTITY, 0.2, GAP)
