@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import isfinite
 
 import numpy as np
 
@@ -150,6 +151,8 @@ def contacts_on(
 
 def _with_slips(touch: TipTouch, local: LocalSurface) -> TipTouch:
     """The touch with the motions of the surfaces there, if its normals are theirs."""
+    if touch.slips:
+        return touch
     mine = [normal for clause in touch.clauses for normal in clause]
     theirs = [normal for clause in local.clauses for normal in clause]
     same = len(mine) == len(theirs) and all(a is b or np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
@@ -184,7 +187,7 @@ def _touches(
     # where several normals meet, which of them turning would be about is open: none, to be safe
     flat = local.shape == "flat" and len(p_PC) == 3
     torsion = torsion_of_patch(tip.radius) if isinstance(tip, SoftTip) and flat else 0.0
-    return (TipTouch(p_PC, local.clauses, local.provenance, local.feature, torsion),)
+    return (TipTouch(p_PC, local.clauses, local.provenance, local.feature, torsion, slips=local.slips),)
 
 
 def _pin(element: Element, tip: PinTip, surface: Surface, X_WP: Pose, p_PA: Point, gap: float) -> Sequence[TipTouch]:
@@ -231,7 +234,7 @@ def _checked(element: Element, values: Point, key: str, dimension: int) -> Point
         raise DimensionError(
             f"element {element.name!r}: `{key}` needs {dimension} coordinates", found=str(found.tolist())
         )
-    if not np.isfinite(found).all():
+    if not all(map(isfinite, found.tolist())):
         raise GeometryError(f"element {element.name!r}: `{key}` is not finite", found=str(found.tolist()))
     if key != "at" and not found.any():
         raise GeometryError(f"element {element.name!r}: `{key}` has zero length", expected="a direction")

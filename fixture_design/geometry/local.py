@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point, Rows, cross_products
+from fixture_design.arrays import Indices, Point, Rows, cross_products, read_only
 from fixture_design.contacts import Provenance
 from fixture_design.contacts.friction import tangents
 from fixture_design.errors import GeometryError, UnsupportedError
@@ -139,7 +140,9 @@ def facets_at(geometry: PartGeometry, touched: Indices) -> Indices:
 
 def _patches(geometry: PartGeometry, facets: Indices) -> list[list[int]]:
     """Facets grouped to smooth patches: of one round surface; or smooth neighbours of which one is a strip."""
-    patches = [[int(facet)] for facet in facets]
+    patches = [[facet] for facet in facets.tolist()]
+    if len(patches) == 1:
+        return patches
     surfaces = {facet: geometry.surface_of_facet(facet) for facet in facets.tolist()}
     kinds = {facet: geometry.provenance_of(facet).kind for facet in facets.tolist()}
     for first, second in combinations(facets.tolist(), 2):
@@ -182,8 +185,17 @@ def _patch(geometry: PartGeometry, facets: list[int], p_PC: Point, name: str) ->
 
 def plane_slips(normal: Point, p_PC: Point) -> Rows:
     """The motions [v; w] that move a plane along itself, one a row: two ways along it, and turning about its normal."""
+    rows = _plane_axes(normal.tobytes()).copy()
+    rows[2, :3] = cross_products(p_PC, rows[2, 3:])
+    return rows
+
+
+@lru_cache(maxsize=1024)
+def _plane_axes(packed: bytes) -> Rows:
+    """`plane_slips` at the origin: the same for all points of a plane."""
+    normal = np.frombuffer(packed)
     unit = normal / np.linalg.norm(normal)
     rows = np.zeros((3, 6))
     rows[0, :3], rows[1, :3] = tangents(unit)
-    rows[2, :3], rows[2, 3:] = cross_products(p_PC, unit), unit
-    return rows
+    rows[2, 3:] = unit
+    return read_only(rows)
