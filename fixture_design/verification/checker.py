@@ -17,7 +17,7 @@ from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
 from fixture_design.tolerances import DEFAULT
 from fixture_design.verification.proofs import Case, Pyramids, coverage_fault, motion_fault, rank_fault, weights_fault
-from fixture_design.verification.rules import rule_fault
+from fixture_design.verification.rules import SLIP_RULES, rule_fault
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def _proof_fault(proof: _Proof, claim: str, finding: Finding, case: Case) -> str
         fault = rule_fault(rule, claim, finding.answer, evidence.motion, case.contacts)
         if fault:
             return fault
-    if rule is not None and rule.name == "common slip" and proof.kind in ("motion", "rank") and not proof.strict:
+    if rule is not None and rule.name in SLIP_RULES and proof.kind in ("motion", "rank") and not proof.strict:
         return None
     if proof.kind == "motion" and isinstance(evidence, Motion):
         return motion_fault(evidence, case, strict=proof.strict, friction=proof.friction, nominal=rule is not None)
