@@ -59,8 +59,6 @@ def rule_in_words(rule: Rule | None) -> str:
     if rule is None:
         return ""
     if rule.name == "slip or leave":
-        return "it leaves some contacts and moves all other touched surfaces along themselves"
-    if rule.name == "slip or leave":
         return " (along some of the surfaces touched, off all others)"
     if rule.name == "common slip":
         return " (along every surface touched)"
