@@ -12,6 +12,7 @@ from fixture_design.contacts import Contact
 from fixture_design.contacts.polyhedral import matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
 from fixture_design.geometry.apart import nearest_place
+from fixture_design.geometry.contact import moved_with
 from fixture_design.geometry.features import Features
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.local import facets_at, feature_name
@@ -196,6 +197,7 @@ def _named(body: Body, X_WP: Pose, touches: Sequence[Touch], friction: float) ->
             touches[index].distance,
             f"{touches[index].features[0]} on {touches[index].features[1]} of {body.name}",
             linked=_twin_name(touches, index, names),
+            slips=tuple(moved_with(X_WP, slips) for slips in touches[index].slips),
         )
         for index in order
     )

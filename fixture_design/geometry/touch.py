@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -33,6 +34,8 @@ class Touch:
         features: what touches what there: of the part, of the body.
         provenance: of the normals, the worst of both sides.
         twin: for an end of a segment with alternatives, the point of its other end; else None.
+        slips: for each normal the motions about P's origin that move its surface along itself, of the part or of the
+            body; empty where they are not known.
     """
 
     point: Vector3
@@ -41,6 +44,7 @@ class Touch:
     features: tuple[str, str]
     provenance: Provenance
     twin: Vector3 | None = None
+    slips: tuple[Rows, ...] = ()
 
     @property
     def distance(self) -> float:
@@ -79,7 +83,8 @@ class Tangents:
         if provenance.normal_error <= DEFAULT.zero:
             # what placing the body has rounded; every tie covers that
             provenance = replace(provenance, normal_error=0.0)
-        return Touch(point, other, clauses, (mine.feature, theirs.feature), provenance)
+        slips = _slips(clauses, ((mine, mine.clauses), (theirs, theirs_snapped)))
+        return Touch(point, other, clauses, (mine.feature, theirs.feature), provenance, slips=slips)
 
     def at_round(self, place: RoundPlace, mine_is_round: bool, sharp: bool = False) -> Touch | None:
         """The contact of a round surface with a flat or round one, or (``sharp``) with an edge or vertex.
@@ -100,7 +105,8 @@ class Tangents:
         if not clauses:
             return None
         error = place.error if place.error > DEFAULT.zero else 0.0
-        return Touch(point, other, clauses, names, Provenance("fitted", error))
+        alone = [len(clause) for clause in clauses] == [1]
+        return Touch(point, other, clauses, names, Provenance("fitted", error), slips=(place.slips,) if alone else ())
 
     def _local(self, side: str, geometry: PartGeometry, point: Vector3) -> LocalSurface:
         key = (side, np.round(point / geometry.on_edge).tobytes())
@@ -137,6 +143,23 @@ def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
     """Whether all normals are the surface's own: then those of the other side, and their errors, play no part."""
     own = {id(normal) for clause in surface.clauses for normal in clause}
     return all(id(normal) in own for clause in clauses for normal in clause)
+
+
+def _slips(clauses: tuple[Clause, ...], sides: Sequence[tuple[LocalSurface, tuple[Clause, ...]]]) -> tuple[Rows, ...]:
+    """For each normal the motions of its surface; empty if one is no surface's own, but of edges that cross.
+
+    ``sides``: each local surface with its normals as they went into the clauses, opposed or not.
+    """
+    own = {
+        tuple(sign * unit_normal(normal)): slips
+        for surface, used in reversed(sides)
+        if surface.slips
+        for normal, slips in zip((n for clause in used for n in clause), surface.slips, strict=True)
+        for sign in (1.0, -1.0)
+    }
+    found = [own.get(tuple(unit_normal(normal))) for clause in clauses for normal in clause]
+    known = tuple(slips for slips in found if slips is not None)
+    return known if len(known) == len(found) else ()
 
 
 def _turn(clauses: tuple[Clause, ...], mine: LocalSurface, theirs: LocalSurface) -> float:
