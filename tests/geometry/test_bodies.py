@@ -180,14 +180,15 @@ def test_shaft_of_rounded_coordinates_turns_under_its_clamp(tmp_path: Path) -> N
     trimesh.Trimesh(vertices, triangles, process=False).export(file)
     pose = Pose.from_xyz_rpy([0, 0, 0.015 / S], [0, 0, 0])
     shaft = Part("shaft", "mesh", file, None, 1.0, pose)
-    top = Element("K", "clamp", np.array([0.0, -0.02, 0.015 / S + 0.015]))
-    layout = replace(layout_of(shaft, body(vee(tmp_path))), elements=(top,), friction=0.0)
+    tops = tuple(Element(f"K{k}", "clamp", np.array([0.0, -0.01 * k, 0.015 / S + 0.015])) for k in range(1, 4))
+    layout = replace(layout_of(shaft, body(vee(tmp_path))), elements=tops, friction=0.0)
     verdict = verify(layout)
     assert verdict.groups["all"].findings["form_closure"].answer is Answer.NO
     assert verdict.groups["all"].findings["deterministic"].answer is Answer.NO
     evidence = verdict.groups["all"].findings["form_closure"].evidence
     assert isinstance(evidence, Motion)
     assert evidence.rule is not None
+    assert evidence.rule.name == "common slip"
     assert check(verdict) == []
 
 
