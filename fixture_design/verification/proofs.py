@@ -34,10 +34,15 @@ Place = tuple[str, int]
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Contacts (possibly none), the dimension of their space's motions, and the scale of their rows: their own."""
+    """Contacts (possibly none), the dimension of their space's motions, and the scale of their rows.
+
+    Attributes:
+        given: the scale; by default the contacts' own, in which proofs are judged.
+    """
 
     contacts: Sequence[Contact]
     dimension: int
+    given: Scale | None = None
 
     @property
     def opened(self) -> Case:
@@ -46,7 +51,7 @@ class Case:
 
     @cached_property
     def scale(self) -> Scale:
-        return scale_of(self.contacts)
+        return self.given or scale_of(self.contacts)
 
     @cached_property
     def limit(self) -> float:
@@ -91,7 +96,7 @@ class Pyramids:
     edges: int
     tangents: Mapping[str, Sequence[Point]]
 
-    def forces(self, contact: Contact) -> list[tuple[Points, Rows]] | str:
+    def forces(self, contact: Contact) -> list[tuple[Points, Rows | None]] | str:
         """The edges of each normal of a contact, forces and moments, or what is wrong with its tangents.
 
         Any unit tangent will do: every edge n + mu t is in the friction cone.
@@ -106,6 +111,16 @@ class Pyramids:
             return f"{contact.name} has a tangent that is not a unit vector across its normal"
         mu, torsion = contact.friction, contact.torsion
         return [contact_edges(normal, mu, torsion, self.edges, first=tangent) for normal, tangent in pairs]
+
+
+def unit_forces(contact: Contact, pyramids: Pyramids | None) -> list[tuple[Points, Rows | None]] | str:
+    """Forces and moments of each normal's rows, of unit normal component; without pyramids the normals themselves.
+
+    Or what is wrong with the pyramids' tangents.
+    """
+    if pyramids is not None:
+        return pyramids.forces(contact)
+    return [(unit_normal(normal)[None, :], None) for normal in contact.normals]
 
 
 def _is_tangent(tangent: Point, normal: Point) -> bool:
@@ -264,7 +279,7 @@ def _weighted_rows(
     rows, values, errors, labels = [], [], [], []
     for contact in case.contacts:
         mu = contact.friction if pyramids else 0.0
-        forces = pyramids.forces(contact) if pyramids else [(unit_normal(n)[None, :], None) for n in contact.normals]
+        forces = unit_forces(contact, pyramids)
         if isinstance(forces, str):
             return forces
         remaining = iter(forces)
