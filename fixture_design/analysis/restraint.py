@@ -27,7 +27,7 @@ from fixture_design.contacts import (
 from fixture_design.errors import ContactError
 from fixture_design.layout import Evidence, Finding, Motion, Rule, Weights
 from fixture_design.layout.verdict import Answer
-from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.tolerances import DEFAULT, SUM_ROUNDING, Tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +167,7 @@ class Restraint:
 
 def motion_in_world(motion: Vector, scale: Scale) -> Vector:
     """A unit motion of scaled rows as [dx; dtheta] about W's origin; components that are only rounding become zero."""
-    tidy = np.where(np.abs(motion) < DEFAULT.zero * 1e-3, 0.0, motion)
+    tidy = np.where(np.abs(motion) < SUM_ROUNDING, 0.0, motion)
     return motion_about_origin(tidy, scale.reference, scale.length)
 
 

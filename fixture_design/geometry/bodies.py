@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fixture_design.arrays import read_only
-from fixture_design.contacts import Contact
-from fixture_design.contacts.polyhedral import matching
+from fixture_design.contacts import Contact, matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
 from fixture_design.geometry.apart import nearest_place
 from fixture_design.geometry.contact import moved_with

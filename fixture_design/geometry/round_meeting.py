@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Rows
-from fixture_design.contacts.friction import tangents
+from fixture_design.contacts import tangents
 from fixture_design.errors import UnsupportedError
 from fixture_design.geometry.features import EdgeEnds, Features
 from fixture_design.geometry.shapes import Directions, Vector3

@@ -26,7 +26,7 @@ from fixture_design.contacts import (
     velocity,
 )
 from fixture_design.layout import Motion, Singular, Weights
-from fixture_design.tolerances import DEFAULT, ROUND_OFF, WITNESS
+from fixture_design.tolerances import DEFAULT, SUM_ROUNDING, WITNESS
 
 #: A clause of a contact: (contact name, its place among the contact's clauses).
 Place = tuple[str, int]
@@ -59,7 +59,7 @@ class Case:
         if not self.contacts:
             return WITNESS
         farthest = max(float(np.linalg.norm(contact.point)) for contact in self.contacts)
-        return max(WITNESS, 100 * ROUND_OFF * (1 + farthest / self.scale.length))
+        return max(WITNESS, SUM_ROUNDING * (1 + farthest / self.scale.length))
 
     @property
     def near(self) -> float:
@@ -183,7 +183,7 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyra
     rank = rows.shape[1]
     smallest = sizes[rank - 1] if len(sizes) >= rank else 0.0
     margin = (smallest - residual) / (1 + float(np.linalg.norm(weights))) - float(errors.max())
-    if margin <= 100 * ROUND_OFF * sizes[0]:
+    if margin <= SUM_ROUNDING * sizes[0]:
         return f"the weights do not balance and span: {margin:.1e}"
     if not closes:
         return None  # closed, and so without interior, however far the normals are off
@@ -191,7 +191,7 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyra
     if len(set(basis)) != rank or len(evidence.basis) != rank or not np.all(weights[basis] > 0):
         return "the basis is not one row of positive weight for every dimension"
     independent = np.linalg.svd(rows[basis], compute_uv=False)
-    return None if independent[-1] > 100 * ROUND_OFF * independent[0] else "the basis rows are not independent"
+    return None if independent[-1] > SUM_ROUNDING * independent[0] else "the basis rows are not independent"
 
 
 def rank_fault(evidence: Singular, case: Case, *, full: bool, nominal: bool = False) -> str | None:

@@ -13,7 +13,7 @@ import numpy as np
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, Scale, motion_scaled, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Counted, Rule, RuleName
-from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF, SLIP_ERRORS, WITNESS
+from fixture_design.tolerances import COPLANAR_ANGLE, SLIP_ERRORS, SUM_ROUNDING, WITNESS
 
 #: Rules that confirm their motion themselves.
 SLIP_RULES = ("common slip", "slip or leave")
@@ -171,5 +171,5 @@ def _rows_at_most(block: Sequence[Contact]) -> int:
         return len(block[0].clauses)
     points = np.array([contact.point for contact in block])
     sizes = np.linalg.svd(points - points[0], compute_uv=False)
-    limit = WITNESS * float(sizes[0]) + 100 * ROUND_OFF * float(np.abs(points).max())
+    limit = WITNESS * float(sizes[0]) + SUM_ROUNDING * float(np.abs(points).max())
     return 1 + min(int(np.sum(sizes > limit)), points.shape[1] - 1)

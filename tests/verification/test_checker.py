@@ -342,6 +342,7 @@ def test_a_residual_that_is_not_the_evidence_s(names: tuple[str, ...], claim: st
     assert finding.residual is not None
     off = finding.residual + 1e-3
     evidence = finding.evidence
+    assert evidence is not None
     moved = (
         tuple(replace(w, residual=off) for w in evidence)
         if isinstance(evidence, tuple)
