@@ -45,5 +45,9 @@ def read_only(values: ArrayLike) -> np.ndarray:
 
 def cross_products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """a X b along the last axis, of length 3: for a few vectors ten times faster than `np.cross`, the same digits."""
+    if first.ndim == second.ndim == 1:
+        a, b, c = first.tolist()
+        x, y, z = second.tolist()
+        return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
     ahead = first[..., _NEXT] * second[..., _LAST]
     return ahead - first[..., _LAST] * second[..., _NEXT]

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import Literal
 
 import numpy as np
@@ -99,16 +100,18 @@ class Contact:
         object.__setattr__(self, "clauses", clauses)
         if point.shape not in ((2,), (3,)):
             raise DimensionError(f"contact {self.name!r}: a point has 2 or 3 coordinates, not shape {point.shape}")
-        if not (np.isfinite(point).all() and np.abs(point).max() <= FARTHEST):
+        # a few numbers are checked one by one sooner than as an array
+        if not all(abs(value) <= FARTHEST for value in point.tolist()):
             raise ContactError(f"contact {self.name!r}: the point must be finite and within {FARTHEST:g} m: {point}")
         if not clauses or not all(clauses):
             raise ContactError(f"contact {self.name!r} has no normal")
         for normal in self.normals:
             if normal.shape != point.shape:
                 raise DimensionError(f"contact {self.name!r}: normal {normal.tolist()} for point {point.tolist()}")
-            if not np.isfinite(normal).all():
-                raise ContactError(f"contact {self.name!r}: a normal is not finite: {normal.tolist()}")
-            if not normal.any():
+            values = normal.tolist()
+            if not all(map(isfinite, values)):
+                raise ContactError(f"contact {self.name!r}: a normal is not finite: {values}")
+            if not any(values):
                 raise ContactError(f"contact {self.name!r}: a normal has zero length")
         if not 0 <= self.friction <= MOST_FRICTION:
             limits = f"between 0 and {MOST_FRICTION:g}"

@@ -19,6 +19,7 @@ concave edge the two half-spaces, not a cut along one of them, which would let t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -86,7 +87,14 @@ def _difference(piece: Piece, other: Piece, tolerances: Tolerances) -> Polyhedra
 
 
 def _spanned(piece: Piece, tolerances: Tolerances) -> PolyhedralConvexCone:
-    return convert(PolyhedralConvexCone.from_faces(np.array(piece), dimension=len(piece[0])), tolerances)
+    return _spanned_by(np.array(piece, dtype=np.float64).tobytes(), len(piece[0]), tolerances)
+
+
+@lru_cache(maxsize=1024)
+def _spanned_by(packed: bytes, dimension: int, tolerances: Tolerances) -> PolyhedralConvexCone:
+    """The same pieces come again and again, along an edge and all over a face."""
+    normals = np.frombuffer(packed).reshape(-1, dimension)
+    return convert(PolyhedralConvexCone.from_faces(normals, dimension=dimension), tolerances)
 
 
 def _given(normal: Point, piece: Piece, other: Piece, parallel: float) -> Point:

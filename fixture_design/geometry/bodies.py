@@ -12,7 +12,7 @@ from fixture_design.contacts import Contact, matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
 from fixture_design.geometry.apart import nearest_place
 from fixture_design.geometry.contact import moved_with
-from fixture_design.geometry.features import Features
+from fixture_design.geometry.features import Features, features_of
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.local import facets_at, feature_name
 from fixture_design.geometry.meeting import meeting_points, running_edges
@@ -61,7 +61,7 @@ def contacts_of_body(
 ) -> tuple[tuple[Contact, ...], tuple[str, ...]]:
     """The contacts of one body and notes about it; see `contacts_of_bodies`."""
     placed = placed_geometry(body, part.pose)
-    mine, theirs = Features(geometry), Features(placed)
+    mine, theirs = features_of(geometry), Features(placed)
     _check_room(body, part, mine, theirs, surface_gap)
     touches = touches_between(mine, theirs, surface_gap)
     notes = tuple(f"body {body.name!r}: {note}" for note in placed.read_notes)
@@ -107,6 +107,8 @@ def touches_between(part: Features, body: Features, gap: float) -> tuple[Touch, 
         text = f"{part.geometry.name!r} and {body.geometry.name!r} meet in {len(pairs.part)} places"
         raise UnsupportedError(text, expected=f"at most {MOST_PLACES}; a coarser mesh where they touch")
     tangents = Tangents(part.geometry, body.geometry)
+    tangents.expect(pairs.part, pairs.body)
+    tangents.expect(segments.part.mean(axis=1), segments.body.mean(axis=1))
     touches: list[Touch] = []
     for start, other_start in zip(segments.part, segments.body, strict=True):
         touches += _along(tangents, start, other_start)

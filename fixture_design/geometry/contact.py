@@ -55,7 +55,7 @@ def contacts_of_element(
         GeometryError: no room for the tip, a size that is not positive, a pad or line that does not lie flat.
         DimensionError: ``at`` or a direction has not three coordinates.
     """
-    return _contacts(element, SolidSurface(geometry), X_WP, friction, surface_gap, part_name or geometry.name)
+    return contacts_on(element, SolidSurface(geometry), X_WP, friction, surface_gap, part_name or geometry.name)
 
 
 def contact_of(
@@ -90,7 +90,7 @@ def polygon_contacts(
         GeometryError: also for a polygon that is none, see `polygon_of`.
     """
     polygon = polygon or polygon_of(part)
-    return _contacts(element, polygon, part.pose, friction, surface_gap, part.name)
+    return contacts_on(element, polygon, part.pose, friction, surface_gap, part.name)
 
 
 def polygon_contact(
@@ -106,9 +106,10 @@ def polygon_contact(
     return contact
 
 
-def _contacts(
+def contacts_on(
     element: Element, surface: Surface, X_WP: Pose, friction: float, gap: float, part_name: str
 ) -> tuple[Contact, ...]:
+    """The contacts between an element and a surface; arguments and errors as in `contacts_of_element`."""
     _check_sizes(element)
     dimension = len(X_WP.translation)
     p_PA = X_WP.inverse().points(_checked(element, element.at, "at", dimension)[None])[0]
@@ -128,7 +129,7 @@ def _contacts(
         error.place = error.place or f"element {element.name!r}"
         raise
     points = X_WP.points(np.array([touch.point for touch in touches]))
-    order = np.lexsort(np.round(points, _ORDER_DECIMALS).T[::-1]).tolist()
+    order = np.lexsort(np.round(points, _ORDER_DECIMALS).T[::-1]).tolist() if len(points) > 1 else [0]
     return tuple(
         Contact(
             element.name if len(touches) == 1 else f"{element.name}#{number}",
@@ -151,14 +152,16 @@ def _with_slips(touch: TipTouch, local: LocalSurface) -> TipTouch:
     """The touch with the motions of the surfaces there, if its normals are theirs."""
     mine = [normal for clause in touch.clauses for normal in clause]
     theirs = [normal for clause in local.clauses for normal in clause]
-    same = len(mine) == len(theirs) and all(np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
+    same = len(mine) == len(theirs) and all(a is b or np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
     return replace(touch, slips=local.slips) if same else touch
 
 
 def moved_with(X_WP: Pose, motions: Rows) -> Rows:
     """Motions [v; w] about P's origin, one a row, about W's origin."""
-    turns = X_WP.vectors(motions[:, 3:])
-    return np.hstack([X_WP.vectors(motions[:, :3]) - cross_products(turns, X_WP.translation), turns])
+    moved = np.empty_like(motions)
+    moved[:, 3:] = X_WP.vectors(motions[:, 3:])
+    moved[:, :3] = X_WP.vectors(motions[:, :3]) - cross_products(moved[:, 3:], X_WP.translation)
+    return moved
 
 
 def _touches(

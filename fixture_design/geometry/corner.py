@@ -15,10 +15,12 @@ corners give both. The cones overlap, as they must: a cut along one wall would l
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
 
+from fixture_design.arrays import cross_products, read_only
 from fixture_design.geometry.shapes import DirectionMask, Directions, Normals, Vector3
 from fixture_design.tolerances import COPLANAR_ANGLE
 
@@ -60,10 +62,17 @@ def cell_directions(normals: Normals) -> Directions:
     Every cell has an edge along which two of the planes intersect: around each such line, the sectors between the
     planes through it are visited. Axes are added if all planes share a line, which then is none of an apex.
     """
+    return _cells(normals.tobytes())
+
+
+@lru_cache(maxsize=256)
+def _cells(packed: bytes) -> Directions:
+    """`cell_directions`: the same few corners come again and again."""
+    normals = np.frombuffer(packed).reshape(-1, 3)
     spanning = np.vstack([normals, *_missing_axes(normals)])
     samples = []
     for first, second in combinations(range(len(spanning)), 2):
-        line = np.cross(spanning[first], spanning[second])
+        line = cross_products(spanning[first], spanning[second])
         if np.linalg.norm(line) > _IN_PLANE:
             line /= np.linalg.norm(line)
             samples += [_around(line, spanning), _around(-line, spanning)]
@@ -72,7 +81,7 @@ def cell_directions(normals: Normals) -> Directions:
     _, cell = np.unique(directions @ normals.T < 0, axis=0, return_inverse=True)
     sums = np.zeros((int(cell.max()) + 1, 3))
     np.add.at(sums, cell.ravel(), directions)
-    return sums / np.linalg.norm(sums, axis=1, keepdims=True)
+    return read_only(sums / np.linalg.norm(sums, axis=1, keepdims=True))
 
 
 def _missing_axes(normals: Normals) -> list[Directions]:
@@ -87,8 +96,8 @@ def _around(line: Vector3, normals: Normals) -> Directions:
     heights = normals @ line
     containing = np.abs(heights) <= _IN_PLANE
     side = normals[containing][0]
-    other = np.cross(line, side)
-    traces = np.cross(normals[containing], line)
+    other = cross_products(line, side)
+    traces = cross_products(normals[containing], line)
     angles = np.arctan2(traces @ other, traces @ side)
     angles = np.unique(np.mod([angles, angles + np.pi], 2 * np.pi))
     widths = np.diff([*angles, angles[0] + 2 * np.pi])

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
 from fixture_design.errors import InputError, format_length, looking_at
 from fixture_design.geometry.bodies import contacts_of_bodies
-from fixture_design.geometry.contact import contacts_of_element, polygon_contacts
+from fixture_design.geometry.contact import contacts_on
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
-from fixture_design.layout import Element, Layout, Part
+from fixture_design.geometry.surface import SolidSurface, Surface
+from fixture_design.layout import Element, Layout, Part, PinTip, Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,14 +65,23 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
         gap, half = format_length(layout.surface_gap), format_length(geometry.half_diagonal)
         problem = f"`surface_gap` is {gap}, and the part {part.name!r} is only {half} from its middle to its corners"
         raise InputError(problem, source=layout.source, expected="a small part of that: what touches is this near")
-    contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, geometry))
+    surface = geometry if isinstance(geometry, Polygon) else _surface_near(layout.elements, geometry, part.pose)
+    contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, surface))
     of_bodies, notes = contacts_of_bodies(layout, geometry)
     center = part.pose.points(geometry.box_center[None])[0]
     return GeometryContacts((*contacts, *of_bodies), (*geometry.notes, *notes), center, geometry.half_diagonal)
 
 
-def _contacts(element: Element, layout: Layout, part: Part, geometry: PartGeometry | Polygon) -> tuple[Contact, ...]:
+def _surface_near(elements: Sequence[Element], geometry: PartGeometry, X_WP: Pose) -> SolidSurface:
+    """The part's surface, looked at where its elements should touch; points that are none are left to `contacts_on`.
+
+    Pins are in the middle of holes, and touch around them.
+    """
+    asked = [np.asarray(element.at) for element in elements if not isinstance(element.tip, PinTip)]
+    places = [at for at in asked if at.shape == (3,) and np.isfinite(at).all()]
+    return SolidSurface.near(geometry, X_WP.inverse().points(np.array(places, dtype=np.float64).reshape(-1, 3)))
+
+
+def _contacts(element: Element, layout: Layout, part: Part, surface: Surface) -> tuple[Contact, ...]:
     with looking_at(layout.source, layout.places.get(("elements", element.name))):
-        if isinstance(geometry, Polygon):
-            return polygon_contacts(element, part, layout.friction, layout.surface_gap, geometry)
-        return contacts_of_element(element, geometry, part.pose, layout.friction, layout.surface_gap, part.name)
+        return contacts_on(element, surface, part.pose, layout.friction, layout.surface_gap, part.name)

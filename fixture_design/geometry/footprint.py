@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Point, cross_products
 from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry.nearest import triangles_in_box
 from fixture_design.geometry.part import PartGeometry
@@ -76,7 +76,7 @@ def footprint(
             expected="`along` in the plane of the facet",
         )
     x /= length
-    y = np.cross(z, x)
+    y = cross_products(z, x)
     size = float(np.hypot(*half))
     slack = min(geometry.on_edge + COPLANAR_ANGLE * size, max(gap, geometry.on_edge))
     level = gap + geometry.on_edge
@@ -91,7 +91,7 @@ def footprint(
 def _in_plane(corners: Float[np.ndarray, "t 3 3"], slack: float) -> np.ndarray:
     """Which triangles lie in the plane z = 0, facing up."""
     low = (np.abs(corners[:, :, 2]) <= slack).all(axis=1)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = cross_products(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     tilt = np.hypot(normals[:, 0], normals[:, 1])
     return low & (normals[:, 2] > 0) & (tilt <= COPLANAR_ANGLE * normals[:, 2])
 
@@ -108,7 +108,7 @@ def _cut(corners: Float[np.ndarray, "t 3 3"], level: float) -> tuple[Segments, F
     points = corners[:, :, :2] + share[:, :, None] * (following - corners)[:, :, :2]
     # every crossing triangle has two sides that cross
     walls = points[change].reshape(-1, 2, 2)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = cross_products(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return walls, normals[:, :2]
 
 

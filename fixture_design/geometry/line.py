@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Point, cross_products
 from fixture_design.contacts import Provenance, unit_normal
 from fixture_design.errors import GeometryError, UnsupportedError, format_length
 from fixture_design.geometry.footprint import FlatTriangles, check_clear, footprint
@@ -96,7 +96,7 @@ def _on_cylinder(
     gap: float,
 ) -> tuple[TipTouch, ...]:
     """The ends of where the line runs along the cylinder; it takes the direction of the axis."""
-    turned = float(np.linalg.norm(np.cross(unit_normal(along), surface.axis))) * tip.length / 2
+    turned = float(np.linalg.norm(cross_products(unit_normal(along), surface.axis))) * tip.length / 2
     if turned > gap:
         raise GeometryError(
             f"{_WHAT} on {surface.name} must run along its axis; its ends are {format_length(round(turned, 9))} off",
@@ -108,7 +108,7 @@ def _on_cylinder(
     triangles = np.concatenate([geometry.facets[facet].triangles for facet in surface.facets])
     corners = geometry.vertices[geometry.triangles[triangles]] - p_PC
     near = (np.abs(corners @ unit_normal(normal)) < surface.radius).all(axis=1)
-    flat = corners[near] @ np.column_stack([surface.axis, np.cross(normal, surface.axis)])
+    flat = corners[near] @ np.column_stack([surface.axis, cross_products(normal, surface.axis)])
     ends = _ends(flat, tip.length / 2, geometry.on_edge)
     return tuple(TipTouch(p_PC + end * surface.axis, ((normal,),), local.provenance, local.feature) for end in ends)
 
@@ -123,7 +123,7 @@ def _along_edge(
     gap: float,
 ) -> tuple[TipTouch, ...]:
     """Both facets must be there along the line; the line takes the direction of the edge."""
-    edge = np.cross(normals[0], normals[1])
+    edge = cross_products(normals[0], normals[1])
     edge = edge * np.copysign(1.0, edge @ along)
     places = [footprint(geometry, p_PC, normal, edge, (tip.length / 2, 0.0), gap, _WHAT) for normal in normals]
     bounds = np.array([_ends(place.flat, tip.length / 2, geometry.on_edge) for place in places])
@@ -132,7 +132,7 @@ def _along_edge(
         return tuple(TipTouch(end, local.clauses, local.provenance, local.feature) for end in ends)
     units = [unit_normal(normal) for normal in normals]
     mean = unit_normal(units[0] + units[1])
-    off = float(np.arctan2(np.linalg.norm(np.cross(units[0], mean)), units[0] @ mean))
+    off = float(np.arctan2(np.linalg.norm(cross_products(units[0], mean)), units[0] @ mean))
     provenance = Provenance("approximate", off + local.provenance.normal_error)
     return tuple(TipTouch(end, ((mean,),), provenance, local.feature) for end in ends)
 
@@ -185,9 +185,9 @@ def _crossings(geometry: PartGeometry, point: Point, direction: Point, half: flo
     """Where a line through a point crosses triangles, by its own coordinate, from -half to half."""
     reach = np.abs(direction) * half
     corners = geometry.vertices[geometry.triangles[triangles_in_box(geometry, point - reach, point + reach)]] - point
-    sides = np.cross(np.roll(corners, -1, axis=1), corners) @ direction
+    sides = cross_products(np.roll(corners, -1, axis=1), corners) @ direction
     through = (sides > 0).all(axis=1) | (sides < 0).all(axis=1)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[through]
+    normals = cross_products(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[through]
     heights = np.einsum("ti,ti->t", normals, corners[through, 0])
     places = heights / (normals @ direction)
     return places[np.abs(places) <= half]

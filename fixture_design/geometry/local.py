@@ -57,7 +57,9 @@ def feature_name(geometry: PartGeometry, facets: Indices) -> str:
     return kind + " | ".join(names)
 
 
-def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = None) -> LocalSurface:
+def local_surface(
+    geometry: PartGeometry, p_PC: Point, within: float | None = None, touched: Indices | None = None
+) -> LocalSurface:
     """The logic of the surface at one of its points.
 
     Facets of one round surface count as that surface, with its normal. Strips of a curved surface that is not known
@@ -67,6 +69,7 @@ def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = No
         p_PC: the point, shape (3,) [m]; on a round surface it may be off the facets that stand for it.
         within: triangles this near count as touched [m], by default ``geometry.on_edge``. Corners that are finer than
             can be looked into are looked at again with ten times as much, twice.
+        touched: these triangles, where they are known already.
 
     Raises:
         GeometryError: the point is inside the material, where solids that the part is made of overlap.
@@ -74,7 +77,7 @@ def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = No
     """
     within = within or geometry.on_edge
     p_PF = p_PC
-    touched = touched_triangles(geometry, p_PF, within)
+    touched = touched_triangles(geometry, p_PF, within) if touched is None else touched
     if not len(touched):
         p_PF = geometry.surface.at(p_PC)[1]
         touched = touched_triangles(geometry, p_PF, within)
@@ -85,7 +88,7 @@ def local_surface(geometry: PartGeometry, p_PC: Point, within: float | None = No
         )
     name = feature_name(geometry, facets)
     patches = [_patch(geometry, members, p_PC, name) for members in _patches(geometry, facets)]
-    sets = sets_by_edges(geometry, touched, [patch.facets for patch in patches])
+    sets = sets_by_edges(geometry, p_PF, touched, [patch.facets for patch in patches])
     if sets is None:
         if clearance(geometry, p_PF, touched) < _ROOM_TO_LOOK * within:
             if within >= 100 * geometry.on_edge:
@@ -128,9 +131,9 @@ def _sets_by_looking(
 
 def facets_at(geometry: PartGeometry, touched: Indices) -> Indices:
     """The facets of some triangles; slivers, whose normals are noise, only if there is nothing else."""
-    facets = np.unique(geometry.facet_of_triangle[touched])
-    known = np.array([geometry.facets[facet].noise <= SLIVER_NOISE for facet in facets], dtype=bool)
-    return facets[known] if known.any() else facets
+    facets = sorted(set(geometry.facet_of_triangle[touched].tolist()))
+    known = [facet for facet in facets if geometry.facets[facet].noise <= SLIVER_NOISE]
+    return np.array(known or facets, dtype=np.int64)
 
 
 def _patches(geometry: PartGeometry, facets: Indices) -> list[list[int]]:
@@ -179,5 +182,7 @@ def _patch(geometry: PartGeometry, facets: list[int], p_PC: Point, name: str) ->
 def plane_slips(normal: Point, p_PC: Point) -> Rows:
     """The motions [v; w] that move a plane along itself, one a row: two ways along it, and turning about its normal."""
     unit = normal / np.linalg.norm(normal)
-    along = np.hstack([np.array(tangents(unit)), np.zeros((2, 3))])
-    return np.vstack([along, np.concatenate([cross_products(p_PC, unit), unit])])
+    rows = np.zeros((3, 6))
+    rows[0, :3], rows[1, :3] = tangents(unit)
+    rows[2, :3], rows[2, 3:] = cross_products(p_PC, unit), unit
+    return rows

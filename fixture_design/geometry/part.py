@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float
 
-from fixture_design.arrays import read_only
+from fixture_design.arrays import Weights, read_only
 from fixture_design.contacts import Provenance
+from fixture_design.geometry.broad import Boxes, BoxTree, boxes_of
 from fixture_design.geometry.distance import DistanceField
 from fixture_design.geometry.facets import Facet, Facets, facet_notes, facets_of
 from fixture_design.geometry.flats import judged_again
@@ -19,6 +19,7 @@ from fixture_design.geometry.planes import neighbours
 from fixture_design.geometry.shapes import (
     DirectionMask,
     Directions,
+    FacetVectors,
     OfTriangle,
     PerVertex,
     Triangles,
@@ -27,7 +28,7 @@ from fixture_design.geometry.shapes import (
 )
 from fixture_design.geometry.smooth_regions import Region, may_be_round, smooth_surfaces
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
-from fixture_design.geometry.winding import shells, winding_number
+from fixture_design.geometry.winding import shells, winding_numbers
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
 
@@ -75,16 +76,16 @@ class PartGeometry:
             ),
         )
 
-    @property
+    @cached_property
     def notes(self) -> tuple[str, ...]:
         """What was mended, and what facets were taken for, for people."""
         return (*self.read_notes, *facet_notes(self.name, self.facets, self._facets.noise))
 
-    @property
+    @cached_property
     def low(self) -> Vector3:
         return self.vertices.min(axis=0)
 
-    @property
+    @cached_property
     def high(self) -> Vector3:
         return self.vertices.max(axis=0)
 
@@ -135,8 +136,10 @@ class PartGeometry:
         ]
 
     @cached_property
-    def _given_facets(self) -> frozenset[int]:
-        return frozenset(facet for _, members in self._given_regions for facet in members)
+    def _maybe_round(self) -> frozenset[int]:
+        """The facets that may stand for a round surface."""
+        given = (facet for _, members in self._given_regions for facet in members)
+        return frozenset([*given, *(index for index, facet in enumerate(self.facets) if may_be_round(facet))])
 
     @cached_property
     def _surface_of_facet(self) -> dict[int, SmoothSurface]:
@@ -148,15 +151,12 @@ class PartGeometry:
 
     def surface_of_facet(self, facet: int) -> SmoothSurface | None:
         """The round surface that a facet stands for, if it is known."""
-        return self._surface_of_facet.get(facet) if self._may_be_round(facet) else None
+        return self._surface_of_facet.get(facet) if facet in self._maybe_round else None
 
     def provenance_of(self, facet: int) -> Provenance:
         """Of a facet's normal, or of its round surface's; such surfaces are looked for when first asked."""
         own = self.facets[facet].provenance
-        return self._judged_again.get(facet, own) if self._may_be_round(facet) else own
-
-    def _may_be_round(self, facet: int) -> bool:
-        return facet in self._given_facets or may_be_round(self.facets[facet])
+        return self._judged_again.get(facet, own) if facet in self._maybe_round else own
 
     @cached_property
     def facet_of_triangle(self) -> OfTriangle:
@@ -170,6 +170,28 @@ class PartGeometry:
     def shell_of_triangle(self) -> OfTriangle:
         """Which closed shell every triangle is of, shape (t,)."""
         return shells(self.triangles, len(self.vertices))
+
+    @cached_property
+    def shell_boxes(self) -> Boxes:
+        """The box around each shell, shape (s, 3) each [m]."""
+        low, high = self.triangle_tree.boxes
+        count = int(self.shell_of_triangle.max()) + 1
+        lowest, highest = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+        np.minimum.at(lowest, self.shell_of_triangle, low)
+        np.maximum.at(highest, self.shell_of_triangle, high)
+        return lowest, highest
+
+    @cached_property
+    def shell_volumes(self) -> Weights:
+        """The signed volume of each shell, negative around cavities, shape (s,) [m^3]."""
+        first, second, third = (self.vertices[self.triangles[:, corner]] - self.box_center for corner in range(3))
+        return np.bincount(self.shell_of_triangle, np.einsum("ij,ij->i", first, np.cross(second, third))) / 6
+
+    @cached_property
+    def facet_units(self) -> FacetVectors:
+        """The unit normal of every facet, shape (f, 3)."""
+        normals = np.array([facet.normal for facet in self.facets])
+        return read_only(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
     @cached_property
     def triangle_neighbours(self) -> Triangles:
@@ -190,10 +212,9 @@ class PartGeometry:
         return bool(self.shell_of_triangle.max() == 0 and (self.triangle_neighbours >= 0).all())
 
     @cached_property
-    def triangle_boxes(self) -> tuple[Float[np.ndarray, "3 t"], Float[np.ndarray, "3 t"]]:
-        """Lowest and highest corner of each triangle's box, shape (3, t) each: a coordinate at a time is faster [m]."""
-        corners = self.vertices[self.triangles]
-        return np.ascontiguousarray(corners.min(axis=1).T), np.ascontiguousarray(corners.max(axis=1).T)
+    def triangle_tree(self) -> BoxTree:
+        """The boxes around the triangles, to be asked which of them are near."""
+        return BoxTree(boxes_of(self.vertices[self.triangles]))
 
     def inside(self, points: Directions) -> DirectionMask:
         """Whether each point, shape (n, 3), is inside the material; not meant for points on the surface.
@@ -201,5 +222,5 @@ class PartGeometry:
         Solids that overlap or touch are one: a winding number says so, Drake's sign (of the nearest triangle) does not.
         """
         if self.is_one_shell:
-            return np.array([self.surface.at(point)[0] < 0 for point in points], dtype=bool)
-        return np.array([winding_number(self.vertices, self.triangles, point) > 0.5 for point in points], dtype=bool)
+            return self.surface.distances(points) < 0
+        return winding_numbers(self.vertices, self.triangles, points) > 0.5

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Point, cross_products
 from fixture_design.contacts import Provenance, tangents
 from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry.local import plane_slips
@@ -78,9 +78,11 @@ def _hole(geometry: PartGeometry, p_PA: Point, axis: Vector3, gap: float) -> Smo
             continue
         away = p_PA - surface.point
         off = float(np.linalg.norm(away - (away @ surface.axis) * surface.axis))
+        if off > gap + surface.error:
+            continue
         heights = (_corners(geometry, surface.facets) - p_PA) @ surface.axis
-        turned = float(np.linalg.norm(np.cross(axis, surface.axis)) * np.ptp(heights))
-        if max(off, turned) <= gap + surface.error and heights.min() - gap <= 0 <= heights.max() + gap:
+        turned = float(np.linalg.norm(cross_products(axis, surface.axis)) * np.ptp(heights))
+        if turned <= gap + surface.error and heights.min() - gap <= 0 <= heights.max() + gap:
             return surface
     return None
 
@@ -97,6 +99,9 @@ def _in_hole(
     center = hole.point + ((p_PA - hole.point) @ hole.axis) * hole.axis
     x, y = tangents(hole.axis)
     arcs = _arcs(geometry, hole, p_PA, x, y)
+    if not arcs:
+        place = place_text(p_PA)
+        raise GeometryError(f"{hole.name} has no wall at the height of the pin at {place} (part frame)")
     whole = sum(end - start for start, end in arcs) > 2 * np.pi - _SEAM
     if along is not None:
         angle = float(np.arctan2(along @ y, along @ x))
@@ -131,17 +136,18 @@ def _arcs(
     geometry: PartGeometry, hole: SmoothSurface, p_PA: Point, x: Vector3, y: Vector3
 ) -> list[tuple[float, float]]:
     """Where there is wall at the point's height, as angles from and to, counter-clockwise [rad]."""
-    steps = []
-    for facet in hole.facets.tolist():
-        away = _corners(geometry, np.array([facet])) - p_PA
-        heights = away @ hole.axis
-        if heights.min() <= geometry.on_edge and heights.max() >= -geometry.on_edge:
-            middle = away.mean(axis=0)
-            start = float(np.arctan2(middle @ y, middle @ x))
-            turns = np.angle(((away @ x) + 1j * (away @ y)) * np.exp(-1j * start))
-            steps.append((start + float(turns.min()), start + float(turns.max())))
+    away = _corners(geometry, hole.facets) - p_PA
+    counts = np.array([3 * len(geometry.facets[facet].triangles) for facet in hole.facets])
+    firsts = np.cumsum(counts) - counts
+    heights = away @ hole.axis
+    low, high = np.minimum.reduceat(heights, firsts), np.maximum.reduceat(heights, firsts)
+    here = (low <= geometry.on_edge) & (high >= -geometry.on_edge)
+    middles = np.add.reduceat(away, firsts) / counts[:, None]
+    starts = np.arctan2(middles @ y, middles @ x)
+    turns = np.angle(((away @ x) + 1j * (away @ y)) * np.exp(-1j * np.repeat(starts, counts)))
+    lows, highs = starts + np.minimum.reduceat(turns, firsts), starts + np.maximum.reduceat(turns, firsts)
     joined: list[tuple[float, float]] = []
-    for start, end in sorted(steps):
+    for start, end in sorted(zip(lows[here].tolist(), highs[here].tolist(), strict=True)):
         if joined and start <= joined[-1][1] + _SEAM:
             joined[-1] = (joined[-1][0], max(end, joined[-1][1]))
         else:
@@ -187,7 +193,7 @@ def _in_slot(
     if abs(heights[0] - heights[1]) / 2 > gap:
         off = format_length(round(abs(heights[0] - heights[1]) / 2, 9))
         raise GeometryError(f"a pin is {off} off the middle of the slot {name}", expected="`at` in its middle")
-    if along is not None and np.linalg.norm(np.cross(along, units[0])) > ALONG_NORMAL:
+    if along is not None and np.linalg.norm(cross_products(along, units[0])) > ALONG_NORMAL:
         raise GeometryError(f"a diamond pin in the slot {name} has no wall at both ends of `along`")
     origins = [geometry.provenance_of(wall) for wall in walls]
     provenance = Provenance("exact", max(origin.normal_error for origin in origins))

@@ -99,7 +99,10 @@ def sharp_on_round(mine: Features, theirs: Features, gap: float) -> Iterator[Rou
         if surface.kind not in ("cylinder", "sphere"):
             continue
         sheet = _round_sheet(theirs, surface, gap)
-        for point in (*mine.sharp_points, *_nearest_on_edges(mine.sharp_edges, surface)):
+        points = np.vstack([mine.sharp_points, _nearest_on_edges(mine.sharp_edges, surface)])
+        # a hair more than what is tested below, point by point
+        near = np.abs(surface.shape.offsets(points)) <= 2 * (gap + surface.error)
+        for point in points[near]:
             foot = surface.project(point)
             if np.linalg.norm(foot - point) <= gap + surface.error and sheet.covers(foot, surface.normal(foot)):
                 normal = -surface.normal(foot)

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point
+from fixture_design.arrays import Indices, Point, cross_products
 from fixture_design.errors import GeometryError, UnsupportedError
 from fixture_design.geometry.corner import MOST_FACETS, clauses_of_corner
 from fixture_design.geometry.nearest import clearance
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.shapes import DirectionMask, Directions, Normals
+from fixture_design.geometry.walls import is_wall
 from fixture_design.tolerances import COPLANAR_ANGLE
 
 
 def sets_by_edges(
-    geometry: PartGeometry, touched: Indices, patches: list[list[int]]
+    geometry: PartGeometry, p_PF: Point, touched: Indices, patches: list[list[int]]
 ) -> tuple[tuple[int, ...], ...] | None:
     """Clauses over patches where the sense of the edges through the point settles them; None where it does not.
 
-    All edges convex: one OR. All concave: one AND. It needs one closed shell, else what other shells do counts too.
+    All edges convex: one OR. All concave: one AND. It needs one closed shell at the point, on no wall inside another.
     """
-    if not geometry.is_one_shell:
+    if not geometry.is_one_shell and is_wall(geometry, p_PF, touched) is not False:
         return None
     if len(patches) == 1:
         return ((0,),)
@@ -43,18 +44,19 @@ def sets_by_edges(
 
 def _edges_between(geometry: PartGeometry, touched: Indices) -> list[tuple[int, int, float]]:
     """The edges that two touched triangles share: their facets, and the dihedral angle, positive if convex [rad]."""
-    edges = []
-    for triangle in touched.tolist():
-        corners = geometry.vertices[geometry.triangles[triangle]]
-        for side, other in enumerate(geometry.triangle_neighbours[triangle].tolist()):
-            first, second = geometry.facet_of_triangle[[triangle, max(other, 0)]].tolist()
-            if other in touched and first != second:
-                units = units_of(np.array([geometry.facets[first].normal, geometry.facets[second].normal]))
-                cross = np.cross(units[0], units[1])
-                angle = np.arctan2(np.linalg.norm(cross), units[0] @ units[1])
-                sense = cross @ (corners[(side + 1) % 3] - corners[side])
-                edges.append((first, second, float(np.copysign(angle, sense))))
-    return edges
+    across = geometry.triangle_neighbours[touched]
+    first, second = geometry.facet_of_triangle[touched][:, None], geometry.facet_of_triangle[np.maximum(across, 0)]
+    shared = (across[:, :, None] == touched).any(axis=2) & (first != second)
+    row, side = np.nonzero(shared)
+    first, second = first[row, 0], second[row, side]
+    corners = geometry.triangles[touched[row]]
+    along = geometry.vertices[corners[np.arange(len(row)), (side + 1) % 3]]
+    along = along - geometry.vertices[corners[np.arange(len(row)), side]]
+    units, other_units = geometry.facet_units[first], geometry.facet_units[second]
+    cross = cross_products(units, other_units)
+    angles = np.arctan2(np.linalg.norm(cross, axis=1), np.einsum("ij,ij->i", units, other_units))
+    angles = np.copysign(angles, np.einsum("ij,ij->i", cross, along))
+    return list(zip(first.tolist(), second.tolist(), angles.tolist(), strict=True))
 
 
 def sets_by_looking(

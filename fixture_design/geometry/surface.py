@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from fixture_design.arrays import Point
+from fixture_design.arrays import Indices, Point
 from fixture_design.geometry.local import LocalSurface, facets_at, feature_name, local_surface
-from fixture_design.geometry.nearest import touched_triangles
+from fixture_design.geometry.nearest import touched_at_each, touched_triangles
 from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.shapes import Directions
 
 
 @runtime_checkable
@@ -47,9 +48,20 @@ class Surface(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class SolidSurface:
-    """The surface of a solid part."""
+    """The surface of a solid part. What was asked once is remembered: contacts come back to the same few points."""
 
     geometry: PartGeometry
+    _feet: dict[bytes, tuple[float, Point]] = field(default_factory=dict, repr=False)
+    _touched: dict[bytes, Indices] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def near(cls, geometry: PartGeometry, points: Directions) -> SolidSurface:
+        """The surface, ready for questions about some points: what they touch is looked for in one go, shape (n, 3)."""
+        surface = cls(geometry)
+        feet = [surface.foot(point)[1] for point in points]
+        touched = touched_at_each(geometry, np.array(feet).reshape(-1, 3), surface.precision)
+        surface._touched.update((foot.tobytes(), found) for foot, found in zip(feet, touched, strict=True))
+        return surface
 
     @property
     def name(self) -> str:
@@ -65,9 +77,8 @@ class SolidSurface:
 
     def nearest(self, p_PQ: Point) -> tuple[float, Point]:
         """As Drake measures it to the facets; where these stand for a round surface, to that, if it is nearer."""
-        distance, p_PF = self.geometry.surface.at(p_PQ)
-        touched = touched_triangles(self.geometry, p_PF, self.precision)
-        surfaces = {self.geometry.surface_of_facet(f) for f in facets_at(self.geometry, touched).tolist()}
+        distance, p_PF = self.foot(p_PQ)
+        surfaces = {self.geometry.surface_of_facet(f) for f in self.facets_at(p_PF).tolist()}
         surface = next(iter(surfaces)) if len(surfaces) == 1 else None
         if surface is None:
             return distance, p_PF
@@ -76,12 +87,10 @@ class SolidSurface:
         return (own if abs(own) < abs(distance) else distance), p_PC
 
     def local(self, p_PC: Point) -> LocalSurface:
-        return local_surface(self.geometry, p_PC)
+        return local_surface(self.geometry, p_PC, touched=self._at(p_PC))
 
     def feature(self, p_PC: Point) -> str:
-        return feature_name(
-            self.geometry, facets_at(self.geometry, touched_triangles(self.geometry, p_PC, self.precision))
-        )
+        return feature_name(self.geometry, self.facets_at(p_PC))
 
     def slack(self, surface: LocalSurface) -> float:
         """Of a round surface twice the depth of its strips; of other strips of width w, tilted by e: w sin e.
@@ -96,3 +105,21 @@ class SolidSurface:
             return max(2 * known.sagitta for known in found if known is not None)
         width = max(self.geometry.facets[facet].width for facet in surface.facets)
         return width * float(np.sin(min(surface.provenance.normal_error, np.pi / 2)))
+
+    def foot(self, p_PQ: Point) -> tuple[float, Point]:
+        """Signed distance and nearest point as Drake measures it, to the facets."""
+        key = p_PQ.tobytes()
+        if key not in self._feet:
+            self._feet[key] = self.geometry.surface.at(p_PQ)
+        return self._feet[key]
+
+    def facets_at(self, p_PF: Point) -> Indices:
+        """The facets that meet at a point of them."""
+        return facets_at(self.geometry, self._at(p_PF))
+
+    def _at(self, p_PF: Point) -> Indices:
+        """The triangles at a point of the facets."""
+        key = p_PF.tobytes()
+        if key not in self._touched:
+            self._touched[key] = touched_triangles(self.geometry, p_PF, self.precision)
+        return self._touched[key]

@@ -8,14 +8,15 @@ from itertools import combinations
 
 import numpy as np
 
-from fixture_design.arrays import Point, Rows, cross_products
+from fixture_design.arrays import Indices, Point, Rows, cross_products
 from fixture_design.contacts import Clause, Provenance, unit_normal
 from fixture_design.contacts.polyhedral import polyhedral_clauses
 from fixture_design.geometry.local import LocalSurface, facets_at, local_surface
-from fixture_design.geometry.nearest import touched_triangles
+from fixture_design.geometry.nearest import touched_at_each, touched_triangles
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.round_meeting import RoundPlace
-from fixture_design.geometry.shapes import Vector3
+from fixture_design.geometry.shapes import Directions, Vector3
+from fixture_design.geometry.walls import is_wall
 from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT, SQUARED_ANGLE
 
 #: How far off a wall it is looked for material, in widths of an edge [-].
@@ -52,12 +53,38 @@ class Touch:
         return float((self.other - self.point) @ unit_normal(self.clauses[0][0]))
 
 
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """What one solid is like at a point: its local surface, and the normals of the cylinders and balls that meet."""
+
+    local: LocalSurface
+    round_normals: tuple[Vector3, ...]
+
+
+#: What there is to be said about a pair of sides: the clauses, where their normals are from, and along what their
+#: surfaces move (`Touch.slips`); None if nothing is.
+_Meeting = tuple[tuple[Clause, ...], Provenance, tuple[Rows, ...]] | None
+
+
 class Tangents:
-    """The local surfaces of a part and a body, each looked at once; the body in the part's frame."""
+    """The local surfaces of a part and a body, each looked at once; the body in the part's frame.
+
+    Along an edge and all over a face they are the same, and so is what follows from a pair of them.
+    """
 
     def __init__(self, part: PartGeometry, body: PartGeometry) -> None:
         self.part, self.body = part, body
-        self._known: dict[tuple[str, bytes], LocalSurface] = {}
+        self._touched: dict[tuple[str, bytes], Indices] = {}
+        self._known: dict[tuple[str, bytes], _Side] = {}
+        self._alike: dict[tuple[object, ...], _Side] = {}
+        self._meetings: dict[tuple[int, int], _Meeting] = {}
+
+    def expect(self, points: Directions, others: Directions) -> None:
+        """Get ready for pairs of points: all that they touch is looked for in one go."""
+        for side, geometry, at in (("part", self.part, points), ("body", self.body, others)):
+            found = touched_at_each(geometry, at, geometry.on_edge)
+            keys = [(side, point.tobytes()) for point in at]
+            self._touched.update(zip(keys, found, strict=True))
 
     def touch(self, point: Vector3, other: Vector3) -> Touch | None:
         """The contact at a pair of points; None where nothing is excluded.
@@ -65,26 +92,18 @@ class Tangents:
         Cones that overlap already are of features that pass each other within the gap: penetration beyond it was
         looked for before (`penetration`).
         """
-        if _is_buried(self.part, point) or _is_buried(self.body, other):
+        at, at_other = self._touched_at("part", point), self._touched_at("body", other)
+        if _is_buried(self.part, point, at) or _is_buried(self.body, other, at_other):
             return None
-        mine, theirs = self._local("part", self.part, point), self._local("body", self.body, other)
-        theirs_snapped = _snapped(theirs, mine)
-        clauses = polyhedral_clauses(mine.clauses, theirs_snapped, COPLANAR_ANGLE, pass_by=True)
-        round_sides = (_round_normals(self.part, mine, point), _round_normals(self.body, theirs, other))
-        # between two round surfaces contact is along lines or all around, not at the vertices that stand for them
-        clauses = tuple(c for c in clauses or () if not all(_among(c, side) for side in round_sides))
-        if not clauses:
+        mine, theirs = self._side("part", point), self._side("body", other)
+        key = (id(mine), id(theirs))
+        if key not in self._meetings:
+            self._meetings[key] = _meeting(mine, theirs)
+        meeting = self._meetings[key]
+        if meeting is None:
             return None
-        provenance = (
-            mine.provenance if _all_of(clauses, mine) else Provenance.worst([mine.provenance, theirs.provenance])
-        )
-        doubt = max(provenance.normal_error, _turn(clauses, mine, theirs), _crossing_error(clauses, mine, theirs))
-        provenance = replace(provenance, normal_error=doubt)
-        if provenance.normal_error <= DEFAULT.zero:
-            # what placing the body has rounded; every tie covers that
-            provenance = replace(provenance, normal_error=0.0)
-        slips = _slips(clauses, ((mine, mine.clauses), (theirs, theirs_snapped)))
-        return Touch(point, other, clauses, (mine.feature, theirs.feature), provenance, slips=slips)
+        clauses, provenance, slips = meeting
+        return Touch(point, other, clauses, (mine.local.feature, theirs.local.feature), provenance, slips=slips)
 
     def at_round(self, place: RoundPlace, mine_is_round: bool, sharp: bool = False) -> Touch | None:
         """The contact of a round surface with a flat or round one, or (``sharp``) with an edge or vertex.
@@ -97,8 +116,7 @@ class Tangents:
         names = (place.name, place.other_name) if mine_is_round else (place.other_name, place.name)
         clauses: tuple[Clause, ...] | None = ((normal,),)
         if sharp:
-            side, geometry = ("part", self.part) if mine_is_round else ("body", self.body)
-            local = self._local(side, geometry, place.point)
+            local = self._side("part" if mine_is_round else "body", place.point).local
             pieces, half = local.clauses, [[-place.normal]]
             clauses = polyhedral_clauses(*((pieces, half) if mine_is_round else (half, pieces)), COPLANAR_ANGLE)
             names = (local.feature, names[1]) if mine_is_round else (names[0], local.feature)
@@ -108,32 +126,69 @@ class Tangents:
         alone = [len(clause) for clause in clauses] == [1]
         return Touch(point, other, clauses, names, Provenance("fitted", error), slips=(place.slips,) if alone else ())
 
-    def _local(self, side: str, geometry: PartGeometry, point: Vector3) -> LocalSurface:
+    def _geometry(self, side: str) -> PartGeometry:
+        return self.part if side == "part" else self.body
+
+    def _touched_at(self, side: str, point: Vector3) -> Indices:
+        key = (side, point.tobytes())
+        if key not in self._touched:
+            geometry = self._geometry(side)
+            self._touched[key] = touched_triangles(geometry, point, geometry.on_edge)
+        return self._touched[key]
+
+    def _side(self, side: str, point: Vector3) -> _Side:
+        """One and the same for all points where it is alike."""
+        geometry = self._geometry(side)
         key = (side, np.round(point / geometry.on_edge).tobytes())
         if key not in self._known:
-            self._known[key] = local_surface(geometry, point)
+            local = local_surface(geometry, point, touched=self._touched_at(side, point))
+            found = _Side(local, _round_normals(geometry, local, point))
+            normals = tuple(tuple(normal.tobytes() for normal in clause) for clause in local.clauses)
+            rounds = tuple(normal.tobytes() for normal in found.round_normals)
+            content = (side, local.feature, local.facets, local.provenance, normals, rounds)
+            self._known[key] = self._alike.setdefault(content, found)
         return self._known[key]
 
 
-def _is_buried(geometry: PartGeometry, point: Vector3) -> bool:
+def _meeting(mine: _Side, theirs: _Side) -> _Meeting:
+    """The clauses of two local surfaces that touch."""
+    theirs_snapped = _snapped(theirs.local, mine.local)
+    clauses = polyhedral_clauses(mine.local.clauses, theirs_snapped, COPLANAR_ANGLE, pass_by=True)
+    # between two round surfaces contact is along lines or all around, not at the vertices that stand for them
+    sides = (mine.round_normals, theirs.round_normals)
+    clauses = tuple(c for c in clauses or () if not all(_among(c, side) for side in sides))
+    if not clauses:
+        return None
+    ours, others = mine.local.provenance, theirs.local.provenance
+    provenance = ours if _all_of(clauses, mine.local) else Provenance.worst([ours, others])
+    turned = _turn(clauses, mine.local, theirs.local)
+    doubt = max(provenance.normal_error, turned, _crossing_error(clauses, mine.local, theirs.local))
+    # what placing the body has rounded is covered by every tie
+    provenance = replace(provenance, normal_error=doubt if doubt > DEFAULT.zero else 0.0)
+    return clauses, provenance, _slips(clauses, ((mine.local, mine.local.clauses), (theirs.local, theirs_snapped)))
+
+
+def _is_buried(geometry: PartGeometry, point: Vector3, touched: Indices) -> bool:
     """Whether a point is on a wall between solids that touch or overlap, with material on both sides."""
     if geometry.is_one_shell:
         return False
-    facets = facets_at(geometry, touched_triangles(geometry, point, geometry.on_edge))
-    normals = [unit_normal(geometry.facets[facet].normal) for facet in facets.tolist()]
+    wall = is_wall(geometry, point, touched) if len(touched) else None
+    if wall is not None:
+        return wall
+    normals = list(geometry.facet_units[facets_at(geometry, touched)])
     # out of a concave corner lead only directions between its normals
     outward = [sum(chosen, np.zeros(3)) for size in (3, 2, 1) for chosen in combinations(normals, size)]
-    steps = (_STEP_OFF * geometry.on_edge * unit_normal(way) for way in outward if np.linalg.norm(way) > _SAME_ROUND)
-    return bool(normals) and all(geometry.inside((point + step)[None])[0] for step in steps)
+    steps = [_STEP_OFF * geometry.on_edge * unit_normal(way) for way in outward if np.linalg.norm(way) > _SAME_ROUND]
+    return bool(normals) and bool(geometry.inside(point + np.array(steps)).all())
 
 
-def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) -> list[Vector3]:
+def _round_normals(geometry: PartGeometry, local: LocalSurface, point: Vector3) -> tuple[Vector3, ...]:
     """The normals of the cylinders and balls that meet at a point."""
     surfaces = (geometry.surface_of_facet(facet) for facet in local.facets)
-    return [s.normal(point) for s in surfaces if s is not None and s.kind in ("cylinder", "sphere")]
+    return tuple(s.normal(point) for s in surfaces if s is not None and s.kind in ("cylinder", "sphere"))
 
 
-def _among(clause: Clause, normals: list[Vector3]) -> bool:
+def _among(clause: Clause, normals: Sequence[Vector3]) -> bool:
     """Whether all normals of a clause are among some unit normals, either way round."""
     sines = [min((np.linalg.norm(np.cross(unit_normal(n), other)) for other in normals), default=1.0) for n in clause]
     return bool(max(sines) <= _SAME_ROUND)

@@ -7,11 +7,14 @@ from functools import cached_property
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Weights
+from fixture_design.arrays import Indices, Weights, cross_products
 from fixture_design.geometry.edges import Edges, edges_of
 from fixture_design.geometry.piece import Piece, area_vectors
-from fixture_design.geometry.shapes import OfTriangle, SideMask, Triangles, Vector3, Vertices
+from fixture_design.geometry.shapes import Directions, OfTriangle, PerPoint, SideMask, Triangles, Vector3, Vertices
 from fixture_design.tolerances import MERGE_VERTICES
+
+#: Points times triangles looked at together: some tens of megabytes.
+_AT_ONCE = 100_000
 
 
 def shells(triangles: Triangles, vertex_count: int) -> OfTriangle:
@@ -61,18 +64,30 @@ def without_sheets(piece: Piece) -> Piece:
 
 
 def winding_number(vertices: Vertices, triangles: Triangles, point: Vector3) -> float:
-    """How often the surface surrounds a point: the sum of the triangles' solid angles over 4 pi.
+    """How often the surface surrounds a point."""
+    return float(winding_numbers(vertices, triangles, point[None])[0])
+
+
+def winding_numbers(vertices: Vertices, triangles: Triangles, points: Directions) -> PerPoint:
+    """How often the surface surrounds each point, shape (n, 3): the sum of the triangles' solid angles over 4 pi.
 
     Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983.
     """
-    first, second, third = (vertices[triangles[:, corner]] - point for corner in range(3))
-    lengths = [np.linalg.norm(edge, axis=1) for edge in (first, second, third)]
-    above = np.einsum("ij,ij->i", first, np.cross(second, third))
-    below = np.prod(lengths, axis=0)
-    below += np.einsum("ij,ij->i", first, second) * lengths[2]
-    below += np.einsum("ij,ij->i", second, third) * lengths[0]
-    below += np.einsum("ij,ij->i", third, first) * lengths[1]
-    return float(np.arctan2(above, below).sum() / (2 * np.pi))
+    step = max(1, _AT_ONCE // len(triangles))
+    starts = range(0, len(points), step)
+    return np.concatenate([np.zeros(0), *(_winding(vertices, triangles, points[s : s + step]) for s in starts)])
+
+
+def _winding(vertices: Vertices, triangles: Triangles, points: Directions) -> PerPoint:
+    corners = vertices[triangles]
+    first, second, third = (corners[None, :, corner] - points[:, None] for corner in range(3))
+    lengths = [np.sqrt(np.einsum("nti,nti->nt", edge, edge)) for edge in (first, second, third)]
+    above = np.einsum("nti,nti->nt", first, cross_products(second, third))
+    below = lengths[0] * lengths[1] * lengths[2]
+    below += np.einsum("nti,nti->nt", first, second) * lengths[2]
+    below += np.einsum("nti,nti->nt", second, third) * lengths[0]
+    below += np.einsum("nti,nti->nt", third, first) * lengths[1]
+    return np.arctan2(above, below).sum(axis=1) / (2 * np.pi)
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -43,6 +44,10 @@ class Pose:
 
     def inverse(self) -> Pose:
         """X_PW."""
+        return self._inverse
+
+    @cached_property
+    def _inverse(self) -> Pose:
         return Pose(read_only(self.rotation.T), read_only(-self.rotation.T @ self.translation))
 
 

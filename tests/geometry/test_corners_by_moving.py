@@ -11,7 +11,7 @@ import pytest
 from fixture_design.contacts import Contact
 from fixture_design.errors import UnsupportedError
 from fixture_design.geometry import PartGeometry, contact_of, load_part
-from fixture_design.geometry.part import winding_number
+from fixture_design.geometry.winding import winding_number
 from fixture_design.layout import Pose
 from tests.geometry.parts import element, part, prism, unit, voxels, write
 
