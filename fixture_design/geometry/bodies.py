@@ -23,6 +23,7 @@ from fixture_design.geometry.penetration import deepest
 from fixture_design.geometry.piece import SmoothPatch
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.geometry.round_meeting import round_on_flat, round_on_round, sharp_on_round
+from fixture_design.geometry.round_unmade import unmade
 from fixture_design.geometry.touch import Tangents, Touch
 from fixture_design.layout import Body, Layout, Part, Pose
 from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF
@@ -74,6 +75,11 @@ def contacts_of_body(
                 text, expected=f"contact on facets, edges or apices, or a clearance above {surface_gap:g} m"
             )
         return (), (*notes, f"body {body.name!r} does not touch the part: it is {format_length(distance)} away")
+    missed = unmade(mine, theirs, np.array([touch.point for touch in touches]), surface_gap)
+    if missed is not None:
+        at = np.round(part.pose.points(missed[0][None])[0], 6).tolist()
+        text = f"{missed[1]} of the part touches {missed[2]} of body {body.name!r} near {at} m: not evaluated"
+        raise UnsupportedError(text, expected="no cones or tori where round surfaces touch; or clearance there")
     return _named(body, part.pose, touches, friction), notes
 
 
