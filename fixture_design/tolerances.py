@@ -20,6 +20,9 @@ import numpy as np
 #: Unit round-off of float64 [-].
 ROUND_OFF = float(np.finfo(np.float64).eps) / 2
 
+#: What sums of a few hundred products leave of a zero, relative to their largest term [-].
+SUM_ROUNDING = 100 * ROUND_OFF
+
 #: Rows shorter than this, next to the longest one, are taken as zero rows [-]. Far below any tie, far above underflow.
 ZERO_ROW = 1e-150
 
@@ -53,6 +56,9 @@ SQUARED_ANGLE = 2e-6
 
 #: Surfaces of one axis or direction, known to within their normal errors, agree within so many of these [-].
 SLIP_ERRORS = 4.0
+
+#: Points that differ by less than this, relative to their coordinates, coincide and have no lever [-].
+COINCIDENT = 1e-12
 
 #: Points of contacts further from the origin than this are mistakes, and their moments could overflow [m].
 FARTHEST = 1e9
@@ -97,7 +103,7 @@ class Tolerances:
 
         Coordinates at a distance keep fewer digits: tie is never below 100 u (1 + ratio), with u the unit round-off.
         """
-        return Tolerances(max(self.tie, 100 * ROUND_OFF * (1 + ratio)), self.band)
+        return Tolerances(max(self.tie, SUM_ROUNDING * (1 + ratio)), self.band)
 
     def as_dict(self) -> dict[str, float]:
         return asdict(self) | {"near": self.near, "zero": self.zero}

@@ -55,6 +55,8 @@ def deterministic(restraint: Restraint) -> Finding:
         return Finding(Answer.YES, margin, Singular(dimension, None, choices, 0.0), 0.0)
     if outcome.motion is None:
         reason = f"the smallest singular value is {outcome.value:.1e}, neither zero nor clear of it"
+        if constraints.errors.any():
+            reason = f"the smallest singular value is {outcome.value:.1e}, not clear of what the normals may be off"
         if search.nodes >= MAX_NODES:
             reason = f"the union has {constraints.branch_count} cones; gave up after {MAX_NODES} choices"
         return Finding(Answer.UNDECIDED, margin, reason=restraint.reason(reason))

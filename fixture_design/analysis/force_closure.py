@@ -122,12 +122,14 @@ def _unopposed(restraint: Restraint, settled: Settled, pyramids: Constraints) ->
         return None
     motion = motion_in_world(settled.motion, pyramids.scale)
     scaled = motion_scaled(motion, restraint.report.reference, restraint.report.length)
-    residual = friction_value(restraint, restraint.reported, scaled) / np.linalg.norm(scaled)
+    residual = friction_value(restraint, restraint.reported, scaled, unsure=False) / np.linalg.norm(scaled)
     return Motion(motion, float(residual))
 
 
-def friction_value(restraint: Restraint, constraints: Constraints, motion: Vector) -> float:
+def friction_value(restraint: Restraint, constraints: Constraints, motion: Vector, *, unsure: bool = True) -> float:
     """max over clauses of min over alternatives of  n . v + mu |[v_t; c w_n]| + error, v the contact point's motion.
+
+    Without ``unsure`` normals are as they are given, and there is no error.
 
     w_n is the turning about the normal, which soft contacts with torsion c resist.
 
@@ -153,5 +155,5 @@ def friction_value(restraint: Restraint, constraints: Constraints, motion: Vecto
         torsion = np.array([c.torsion for c in restraint.contacts])[owner] / constraints.scale.length
         sliding = np.hypot(sliding, torsion * (constraints.rows[:, :3] @ turning))
         errors += angles * friction * torsion * float(np.linalg.norm(turning))
-    products = normal_parts + friction * sliding + errors
+    products = normal_parts + friction * sliding + (errors if unsure else 0.0)
     return float(constraints.clause_values(products).max())

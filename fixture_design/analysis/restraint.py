@@ -12,7 +12,7 @@ from fixture_design.analysis.branches import Leaf, Settled, UnionQuestions
 from fixture_design.analysis.counting import too_few_to_close
 from fixture_design.analysis.margin import closure_margin
 from fixture_design.analysis.normal_errors import blur, still_motion
-from fixture_design.analysis.slipping import common_slip
+from fixture_design.analysis.slipping import common_slip, slip_or_leave
 from fixture_design.arrays import Points, Rows, Vector
 from fixture_design.contacts import (
     Constraints,
@@ -27,7 +27,7 @@ from fixture_design.contacts import (
 from fixture_design.errors import ContactError
 from fixture_design.layout import Evidence, Finding, Motion, Rule, Weights
 from fixture_design.layout.verdict import Answer
-from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.tolerances import DEFAULT, SUM_ROUNDING, Tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +86,9 @@ class Restraint:
             nominal = UnionQuestions(self.constraints.without_errors(), self.tolerances).closed()
             if nominal.truth is False:
                 return replace(nominal, rule=rule)
+        leaving = slip_or_leave(self.contacts, self.tolerances) if self.contacts[0].dimension == 6 else None
+        if leaving is not None:
+            return Settled(False, motion=leaving, rule=Rule("slip or leave", ()))
         return self.blamed(settled)
 
     @cached_property
@@ -116,9 +119,9 @@ class Restraint:
 
     @cached_property
     def margin(self) -> float | None:
-        """s of the normals, in the report's scale; what keeps a common slip from being a tie is their error."""
+        """s of the normals, in the report's scale; what keeps slips from being ties is the normals' error."""
         margin = closure_margin(self.reported, self.tolerances)
-        return margin if margin is None or self.slip is None else min(margin, 0.0)
+        return margin if margin is None or self.closed.rule is None else min(margin, 0.0)
 
     def finding(self, answer: Answer, settled: Settled, margin: float | None, *, full_rank: bool) -> Finding:
         """A finding about the normals, with its evidence; ``full_rank``: the weights need a basis for their claim."""
@@ -164,7 +167,7 @@ class Restraint:
 
 def motion_in_world(motion: Vector, scale: Scale) -> Vector:
     """A unit motion of scaled rows as [dx; dtheta] about W's origin; components that are only rounding become zero."""
-    tidy = np.where(np.abs(motion) < DEFAULT.zero * 1e-3, 0.0, motion)
+    tidy = np.where(np.abs(motion) < SUM_ROUNDING, 0.0, motion)
     return motion_about_origin(tidy, scale.reference, scale.length)
 
 

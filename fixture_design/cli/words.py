@@ -58,6 +58,8 @@ def rule_in_words(rule: Rule | None) -> str:
     """Why errors of normals do not matter, as an addition to the motion; nothing without a rule."""
     if rule is None:
         return ""
+    if rule.name == "slip or leave":
+        return " (along some of the surfaces touched, off all others)"
     if rule.name == "common slip":
         return " (along every surface touched)"
     total = sum(block.count for block in rule.counted)

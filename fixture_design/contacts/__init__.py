@@ -1,8 +1,8 @@
 """Contacts as unidirectional constraints (thesis 2.2): points, normals with their logic, face vectors, friction."""
 
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
-from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, unit_normal
-from fixture_design.contacts.friction import Side, first_tangents, friction_edges
+from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, matching, unit_normal
+from fixture_design.contacts.friction import Side, first_tangents, friction_edges, tangents
 from fixture_design.contacts.limit_surface import contact_edges, torsion_of_patch
 from fixture_design.contacts.wrench import cross, face_vectors, motion_about_origin, motion_scaled, velocity
 
@@ -21,9 +21,11 @@ __all__ = [
     "face_vectors",
     "first_tangents",
     "friction_edges",
+    "matching",
     "motion_about_origin",
     "motion_scaled",
     "scale_of",
+    "tangents",
     "torsion_of_patch",
     "unit_normal",
     "velocity",

@@ -19,6 +19,7 @@ from fixture_design.contacts.friction import Side, first_tangents
 from fixture_design.contacts.limit_surface import contact_edges
 from fixture_design.contacts.wrench import face_vectors
 from fixture_design.errors import ContactError, DimensionError
+from fixture_design.tolerances import COINCIDENT
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def scale_of(contacts: Sequence[Contact]) -> Scale:
     reference = points.mean(axis=0)
     length = float(np.sqrt(np.mean(np.sum((points - reference) ** 2, axis=1))))
     # points that coincide up to rounding have no lever: any length serves, since all their moments vanish
-    if length <= 1e-12 * max(1e-300, float(np.abs(points).max(initial=0.0))):
+    if length <= COINCIDENT * float(np.abs(points).max(initial=0.0)):
         length = max(1.0, float(np.abs(reference).max(initial=0.0)))
     return Scale(reference, length)
 

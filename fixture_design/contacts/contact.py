@@ -19,7 +19,7 @@ from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import ArrayLike, Point, read_only
+from fixture_design.arrays import ArrayLike, Point, Rows, read_only
 from fixture_design.errors import ContactError, DimensionError
 from fixture_design.tolerances import FARTHEST, MOST_FRICTION
 
@@ -155,3 +155,16 @@ def unit_normal(normal: Point) -> Point:
     """The normal at length one; in two steps, since the square of 1e-200 is zero."""
     scaled = normal / np.abs(normal).max()
     return scaled / np.linalg.norm(scaled)
+
+
+def matching(first: Clause, second: Clause, within: float) -> bool:
+    """Whether two clauses have the same alternatives, whatever their order and length."""
+    if len(first) != len(second):
+        return False
+    ones, others = _units(first), _units(second)
+    near = np.linalg.norm(ones[:, None] - others[None], axis=2) <= within
+    return bool(near.any(axis=1).all() and near.any(axis=0).all())
+
+
+def _units(clause: Clause) -> Rows:
+    return np.array([unit_normal(normal) for normal in clause])

@@ -23,16 +23,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from fixture_design.arrays import Point, Rows
+from fixture_design.arrays import Point
 from fixture_design.cones import PolyhedralConvexCone, convert, convert_rows
 from fixture_design.contacts.contact import Clause, unit_normal
 from fixture_design.tolerances import Tolerances
 
 #: A convex piece of a tangent cone, {x : n . x <= 0}: the outward normals of its facets, of any length.
 Piece = Sequence[Point]
-
-#: A point's tangent cone in space, {o}: what a tip without volume has for a piece.
-POINT_PIECE: tuple[Point, ...] = (*np.eye(3), *-np.eye(3))
 
 #: Angles are compared directly here, without a band: what is nearly parallel was drawn parallel [rad].
 _EXACT = Tolerances(tie=1e-9, band=1.0)
@@ -76,11 +73,6 @@ def polyhedral_clauses(
             differences.append((cone, clause))
     kept = _without_contained(differences, parallel)
     return tuple(sorted((_sorted(clause) for clause in kept), key=lambda clause: [_key(n) for n in clause]))
-
-
-def admits(clauses: Sequence[Clause], velocity: Point) -> bool:
-    """Whether a displacement of the contact point is admissible: n . v <= 0 for some n of every clause."""
-    return all(any(normal @ velocity <= 0 for normal in clause) for clause in clauses)
 
 
 def _difference(piece: Piece, other: Piece, tolerances: Tolerances) -> PolyhedralConvexCone:
@@ -140,16 +132,3 @@ def _sorted(clause: Clause) -> Clause:
 
 def _key(normal: Point) -> list[float]:
     return (np.round(unit_normal(normal), 7) + 0.0).tolist()
-
-
-def matching(first: Clause, second: Clause, within: float) -> bool:
-    """Whether two clauses have the same alternatives, whatever their order and length."""
-    if len(first) != len(second):
-        return False
-    ones, others = _units(first), _units(second)
-    near = np.linalg.norm(ones[:, None] - others[None], axis=2) <= within
-    return bool(near.any(axis=1).all() and near.any(axis=0).all())
-
-
-def _units(clause: Clause) -> Rows:
-    return np.array([unit_normal(normal) for normal in clause])

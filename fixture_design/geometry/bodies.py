@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from fixture_design.arrays import read_only
-from fixture_design.contacts import Contact
-from fixture_design.contacts.polyhedral import matching
+from fixture_design.contacts import Contact, matching
 from fixture_design.errors import PenetrationError, UnsupportedError, format_length, looking_at
+from fixture_design.geometry.contact import moved_with
 from fixture_design.geometry.features import Features, features_of
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.local import facets_at, feature_name
@@ -22,6 +22,7 @@ from fixture_design.geometry.penetration import deepest
 from fixture_design.geometry.piece import SmoothPatch
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.geometry.round_meeting import round_on_flat, round_on_round, sharp_on_round
+from fixture_design.geometry.round_unmade import unmade
 from fixture_design.geometry.separation import separation
 from fixture_design.geometry.touch import Tangents, Touch
 from fixture_design.layout import Body, Layout, Part, Pose
@@ -75,6 +76,11 @@ def contacts_of_body(
                 text, expected=f"contact on facets, edges or apices, or a clearance above {surface_gap:g} m"
             )
         return (), (*notes, f"body {body.name!r} does not touch the part: it is {format_length(apart.distance)} away")
+    missed = unmade(mine, theirs, np.array([touch.point for touch in touches]), surface_gap)
+    if missed is not None:
+        at = np.round(part.pose.points(missed[0][None])[0], 6).tolist()
+        text = f"{missed[1]} of the part touches {missed[2]} of body {body.name!r} near {at} m: not evaluated"
+        raise UnsupportedError(text, expected="no cones or tori where round surfaces touch; or clearance there")
     return _named(body, part.pose, touches, friction), notes
 
 
@@ -199,6 +205,7 @@ def _named(body: Body, X_WP: Pose, touches: Sequence[Touch], friction: float) ->
             touches[index].distance,
             f"{touches[index].features[0]} on {touches[index].features[1]} of {body.name}",
             linked=_twin_name(touches, index, names),
+            slips=tuple(moved_with(X_WP, slips) for slips in touches[index].slips),
         )
         for index in order
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
-from fixture_design.errors import InputError, looking_at
+from fixture_design.errors import InputError, format_length, looking_at
 from fixture_design.geometry.bodies import contacts_of_bodies
 from fixture_design.geometry.contact import contacts_on
 from fixture_design.geometry.load import load_part
@@ -48,7 +48,8 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
         geometry: of ``layout.part``, where it is loaded already; a batch of layouts loads its part once.
 
     Raises:
-        InputError: elements without a part; a part that does not fit the layout's space; see `contacts_of_element`.
+        InputError: elements without a part; a part that does not fit the layout's space; a `surface_gap` as large as
+            the part; see `contacts_of_element`.
     """
     part = layout.part
     if part is None:
@@ -60,6 +61,10 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
         raise InputError(problem, source=layout.source, place=layout.places.get(("part",)), found=f"kind {part.kind!r}")
     with looking_at(layout.source, layout.places.get(("part",))):
         geometry = geometry or load_geometry(part)
+    if layout.surface_gap > geometry.half_diagonal:
+        gap, half = format_length(layout.surface_gap), format_length(geometry.half_diagonal)
+        problem = f"`surface_gap` is {gap}, and the part {part.name!r} is only {half} from its middle to its corners"
+        raise InputError(problem, source=layout.source, expected="a small part of that: what touches is this near")
     surface = geometry if isinstance(geometry, Polygon) else _surface_near(layout.elements, geometry, part.pose)
     contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, surface))
     of_bodies, notes = contacts_of_bodies(layout, geometry)

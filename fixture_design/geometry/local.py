@@ -10,8 +10,7 @@ from typing import Literal
 import numpy as np
 
 from fixture_design.arrays import Indices, Point, Rows, cross_products, read_only
-from fixture_design.contacts import Provenance
-from fixture_design.contacts.friction import tangents
+from fixture_design.contacts import Provenance, tangents
 from fixture_design.errors import GeometryError, UnsupportedError
 from fixture_design.geometry.nearest import clearance, touched_triangles
 from fixture_design.geometry.part import PartGeometry

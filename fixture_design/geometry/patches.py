@@ -14,9 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Indices
-from fixture_design.contacts import Clause, unit_normal
-from fixture_design.contacts.friction import tangents
-from fixture_design.contacts.polyhedral import matching
+from fixture_design.contacts import Clause, matching, tangents, unit_normal
 from fixture_design.geometry.shapes import Vector3
 from fixture_design.geometry.touch import Touch
 from fixture_design.tolerances import COPLANAR_ANGLE, SQUARED_ANGLE

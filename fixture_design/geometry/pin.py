@@ -11,8 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from fixture_design.arrays import Point, cross_products
-from fixture_design.contacts import Provenance
-from fixture_design.contacts.friction import tangents
+from fixture_design.contacts import Provenance, tangents
 from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry.local import plane_slips
 from fixture_design.geometry.nearest import distances

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Point, Vector
-from fixture_design.contacts.friction import tangents
+from fixture_design.contacts import tangents
 from fixture_design.geometry.shapes import Directions, FacetVectors, Vector3
 from fixture_design.geometry.smooth_surface import RoundKind, RoundShape
 

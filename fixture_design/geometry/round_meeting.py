@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.contacts.friction import tangents
+from fixture_design.arrays import Rows
+from fixture_design.contacts import tangents
 from fixture_design.errors import UnsupportedError
 from fixture_design.geometry.features import EdgeEnds, Features
 from fixture_design.geometry.shapes import Directions, Vector3
@@ -36,6 +37,7 @@ class RoundPlace:
         normal: unit, out of the solid that the round surface bounds.
         name: of the round surface.  other_name: of the other face.
         error: of the normal [rad].
+        slips: motions of the round surface along itself, about the origin, shape (k, 6).
     """
 
     point: Vector3
@@ -44,6 +46,7 @@ class RoundPlace:
     name: str
     other_name: str
     error: float
+    slips: Rows
 
     @property
     def distance(self) -> float:
@@ -103,7 +106,7 @@ def sharp_on_round(mine: Features, theirs: Features, gap: float) -> Iterator[Rou
             foot = surface.project(point)
             if np.linalg.norm(foot - point) <= gap + surface.error and sheet.covers(foot, surface.normal(foot)):
                 normal = -surface.normal(foot)
-                yield RoundPlace(point, foot, normal, "", surface.name, surface.normal_error)
+                yield RoundPlace(point, foot, normal, "", surface.name, surface.normal_error, surface.slips())
 
 
 def _nearest_on_edges(edges: EdgeEnds, surface: SmoothSurface) -> Directions:
@@ -147,7 +150,7 @@ def _on_plane(surface: SmoothSurface, sheet: Sheet, theirs: Features, facet: int
     flat = Sheet.of(theirs.geometry, np.array([facet]), gap + surface.error)
     for place in _ends(sheet, flat, point, along, up):
         foot = place - float((place - plane.centroid) @ up) * up
-        yield RoundPlace(place, foot, -up, surface.name, plane.name, plane.normal_error)
+        yield RoundPlace(place, foot, -up, surface.name, plane.name, plane.normal_error, surface.slips())
 
 
 def _lowest(surface: SmoothSurface, up: Vector3) -> tuple[Vector3, Vector3 | None] | None:
@@ -218,7 +221,7 @@ def _on_round(
     point = start + surface.radius * outward
     normal = -outward if surface.hollow else outward
     for place in _ends(sheet, other_sheet, point, surface.axis if parallel else None, normal):
-        yield RoundPlace(place, other.project(place), normal, surface.name, other.name, error)
+        yield RoundPlace(place, other.project(place), normal, surface.name, other.name, error, surface.slips())
 
 
 def _radius(surface: SmoothSurface) -> float:
@@ -270,7 +273,7 @@ def _all_around(
             for place in sorted(set(stretch)):
                 point = surface.point + surface.radius * outward + place * surface.axis
                 normal = -outward if surface.hollow else outward
-                yield RoundPlace(point, other.project(point), normal, surface.name, other.name, error)
+                yield RoundPlace(point, other.project(point), normal, surface.name, other.name, error, surface.slips())
 
 
 def _angles(covered: Callable[[float], bool]) -> list[float]:

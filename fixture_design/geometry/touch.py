@@ -35,6 +35,8 @@ class Touch:
         features: what touches what there: of the part, of the body.
         provenance: of the normals, the worst of both sides.
         twin: for an end of a segment with alternatives, the point of its other end; else None.
+        slips: for each normal the motions about P's origin that move its surface along itself, of the part or of the
+            body; empty where they are not known.
     """
 
     point: Vector3
@@ -43,6 +45,7 @@ class Touch:
     features: tuple[str, str]
     provenance: Provenance
     twin: Vector3 | None = None
+    slips: tuple[Rows, ...] = ()
 
     @property
     def distance(self) -> float:
@@ -58,8 +61,9 @@ class _Side:
     round_normals: tuple[Vector3, ...]
 
 
-#: What there is to be said about a pair of sides: the clauses and where their normals are from; None if nothing is.
-_Meeting = tuple[tuple[Clause, ...], Provenance] | None
+#: What there is to be said about a pair of sides: the clauses, where their normals are from, and along what their
+#: surfaces move (`Touch.slips`); None if nothing is.
+_Meeting = tuple[tuple[Clause, ...], Provenance, tuple[Rows, ...]] | None
 
 
 class Tangents:
@@ -98,8 +102,8 @@ class Tangents:
         meeting = self._meetings[key]
         if meeting is None:
             return None
-        clauses, provenance = meeting
-        return Touch(point, other, clauses, (mine.local.feature, theirs.local.feature), provenance)
+        clauses, provenance, slips = meeting
+        return Touch(point, other, clauses, (mine.local.feature, theirs.local.feature), provenance, slips=slips)
 
     def at_round(self, place: RoundPlace, mine_is_round: bool, sharp: bool = False) -> Touch | None:
         """The contact of a round surface with a flat or round one, or (``sharp``) with an edge or vertex.
@@ -119,7 +123,8 @@ class Tangents:
         if not clauses:
             return None
         error = place.error if place.error > DEFAULT.zero else 0.0
-        return Touch(point, other, clauses, names, Provenance("fitted", error))
+        alone = [len(clause) for clause in clauses] == [1]
+        return Touch(point, other, clauses, names, Provenance("fitted", error), slips=(place.slips,) if alone else ())
 
     def _geometry(self, side: str) -> PartGeometry:
         return self.part if side == "part" else self.body
@@ -159,7 +164,8 @@ def _meeting(mine: _Side, theirs: _Side) -> _Meeting:
     turned = _turn(clauses, mine.local, theirs.local)
     doubt = max(provenance.normal_error, turned, _crossing_error(clauses, mine.local, theirs.local))
     # what placing the body has rounded is covered by every tie
-    return clauses, replace(provenance, normal_error=doubt if doubt > DEFAULT.zero else 0.0)
+    provenance = replace(provenance, normal_error=doubt if doubt > DEFAULT.zero else 0.0)
+    return clauses, provenance, _slips(clauses, ((mine.local, mine.local.clauses), (theirs.local, theirs_snapped)))
 
 
 def _is_buried(geometry: PartGeometry, point: Vector3, touched: Indices) -> bool:
@@ -192,6 +198,23 @@ def _all_of(clauses: tuple[Clause, ...], surface: LocalSurface) -> bool:
     """Whether all normals are the surface's own: then those of the other side, and their errors, play no part."""
     own = {id(normal) for clause in surface.clauses for normal in clause}
     return all(id(normal) in own for clause in clauses for normal in clause)
+
+
+def _slips(clauses: tuple[Clause, ...], sides: Sequence[tuple[LocalSurface, tuple[Clause, ...]]]) -> tuple[Rows, ...]:
+    """For each normal the motions of its surface; empty if one is no surface's own, but of edges that cross.
+
+    ``sides``: each local surface with its normals as they went into the clauses, opposed or not.
+    """
+    own = {
+        tuple(sign * unit_normal(normal)): slips
+        for surface, used in reversed(sides)
+        if surface.slips
+        for normal, slips in zip((n for clause in used for n in clause), surface.slips, strict=True)
+        for sign in (1.0, -1.0)
+    }
+    found = [own.get(tuple(unit_normal(normal))) for clause in clauses for normal in clause]
+    known = tuple(slips for slips in found if slips is not None)
+    return known if len(known) == len(found) else ()
 
 
 def _turn(clauses: tuple[Clause, ...], mine: LocalSurface, theirs: LocalSurface) -> float:

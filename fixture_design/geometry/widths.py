@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Indices
-from fixture_design.contacts.friction import tangents
+from fixture_design.contacts import tangents
 from fixture_design.geometry.shapes import Directions, FacetVectors, OfFacet, PerFacet, PerVertex, Vector3, Vertices
 
 #: Facets with up to this many vertices go through numpy together; a strip of a tessellated surface has four.

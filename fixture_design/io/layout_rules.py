@@ -77,7 +77,7 @@ def _polygon_problems(polygon: tuple[tuple[float, ...], ...]) -> Iterator[Proble
     if doubled_area < 0:
         yield Problem(("part", "polygon"), "the polygon's vertices run clockwise", expected="them counter-clockwise")
     elif doubled_area == 0:
-        yield Problem(("part", "polygon"), "the polygon encloses no area")
+        yield Problem(("part", "polygon"), "the polygon encloses no area: its sides cross, or lie on each other")
 
 
 def _element_problems(element: ElementRecord, path: KeyPath, planar: bool) -> Iterator[Problem]:

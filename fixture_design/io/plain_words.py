@@ -32,6 +32,7 @@ _WRONG = {
     "too_long": "has too many values",
     "greater_than": "is out of range",
     "greater_than_equal": "is out of range",
+    "less_than_equal": "is out of range",
 }
 
 #: Kind of error -> what would have been right, with pydantic's limits filled in.
@@ -45,6 +46,7 @@ _EXPECTED = {
     "too_long": "{max_length} or fewer",
     "greater_than": "a number > {gt:g}",
     "greater_than_equal": "a number >= {ge:g}",
+    "less_than_equal": "a number <= {le:g}",
 }
 
 _NO_NULL = "a value; leave the key out where there is none"

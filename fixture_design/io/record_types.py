@@ -9,6 +9,8 @@ from typing import Annotated, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
+from fixture_design.tolerances import MOST_FRICTION
+
 
 class Record(BaseModel):
     """Base of all records: no unknown keys, no conversions, frozen.
@@ -28,6 +30,7 @@ def exactly_one(*keys: str) -> ConfigDict:
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
 NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
+Friction = Annotated[float, Field(allow_inf_nan=False, ge=0, le=MOST_FRICTION)]
 
 #: [x, y] or [x, y, z]; which of them, `layout_rules` checks.
 Coordinates = Annotated[tuple[Number, ...], Field(strict=False, min_length=2, max_length=3)]

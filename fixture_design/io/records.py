@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Field
 from fixture_design.contacts import Role
 from fixture_design.io.record_types import (
     Coordinates,
+    Friction,
     Moment,
     Name,
     NotNegative,
@@ -110,7 +111,7 @@ class ElementRecord(Record):
     tip: TipField = Field(None, description="default: point", json_schema_extra=_or_point)
     axis: Coordinates | None = Field(None, description="of a pin: its direction")
     tolerance: NotNegative | None = Field(None, description="of its position along the normal [length]")
-    friction: NotNegative | None = Field(None, description="coefficient, default: the layout's")
+    friction: Friction | None = Field(None, description="coefficient, default: the layout's")
     preload: NotNegative | None = Field(None, description="what a clamp pushes with, along the inward normal [N]")
     limits: Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=2, max_length=2)] | None = Field(
         None, description="smallest and largest preload that design may choose [N]"
@@ -127,7 +128,7 @@ class BodyRecord(Record):
     role: Role
     urdf: Text = Field(description="URDF file, relative to this file")
     pose: PoseRecord | None = Field(None, description="X_WB, default identity")
-    friction: NotNegative | None = Field(None, description="coefficient, default: the layout's")
+    friction: Friction | None = Field(None, description="coefficient, default: the layout's")
 
 
 class ContactRecord(Record):
@@ -152,7 +153,7 @@ class ContactRecord(Record):
         ]
         | None
     ) = Field(None, description="AND of ORs")
-    friction: NotNegative | None = Field(None, description="coefficient, default: the layout's")
+    friction: Friction | None = Field(None, description="coefficient, default: the layout's")
 
 
 class KeyFeatureRecord(Record):
@@ -201,7 +202,7 @@ class SweepRecord(Record):
     WANTED: ClassVar[str] = "a mapping such as {at: 0.001, friction: [0.1, 0.3], samples: 100, seed: 1}"
     part_pose: PoseRecord | None = Field(None, description="largest deviation of each coordinate [length, rad]")
     at: NotNegative | None = Field(None, description="largest deviation of each coordinate of `at` [length]")
-    friction: Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=2, max_length=2)] | None = Field(
+    friction: Annotated[tuple[Friction, ...], Field(strict=False, min_length=2, max_length=2)] | None = Field(
         None, description="smallest and largest coefficient"
     )
     samples: Annotated[int, Field(ge=1)] | None = Field(None, description="number of variants")
@@ -217,7 +218,7 @@ class LayoutRecord(Record):
     units: Literal["m", "mm", "in"] = Field("m", description="of the lengths in this file")
     part: PartRecord | None = None
     gravity: Coordinates | None = Field(None, description="[m/s^2], whatever the units; default none")
-    friction: NotNegative = Field(0.0, description="default coefficient")
+    friction: Friction = Field(0.0, description="default coefficient")
     surface_gap: NotNegative | None = Field(
         None, description="largest distance between element and surface [length], default 1e-5 m"
     )

@@ -47,7 +47,7 @@ class RuleRecord(Record):
     "few rows": fewer than d rows do not locate, d rows do not close; "few normals": p do not close; d = 6, p = 3 in
     space, d = 3, p = 2 in the plane. Contacts on one plane facet have one normal, and rows of 1 + the dimension of
     their points' affine hull. "common slip": the motion moves every touched surface along itself, up to the normals'
-    errors (`slips` of the contacts); nothing is counted.
+    errors (`slips` of the contacts); "slip or leave": or leaves the contacts there. Nothing is counted then.
     """
 
     name: RuleName

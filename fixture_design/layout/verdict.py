@@ -13,7 +13,7 @@ from fixture_design.contacts import Contact
 from fixture_design.layout.layout import Requirement, Space
 
 #: Rules that make an answer certain whatever the normals are.
-RuleName = Literal["few rows", "few normals", "common slip"]
+RuleName = Literal["few rows", "few normals", "common slip", "slip or leave"]
 
 
 class Answer(StrEnum):
@@ -46,8 +46,8 @@ class Rule:
 
     Attributes:
         name: "few rows" or "few normals", see `analysis.counting`; "common slip": the motion moves every touched
-            surface along itself, see `analysis.slipping`.
-        counted: each contact of the group once; their counts add up to too few for the claim. None for a slip.
+            surface along itself, "slip or leave": or leaves the contacts there, see `analysis.slipping`.
+        counted: each contact of the group once; their counts add up to too few for the claim. None for slips.
     """
 
     name: RuleName

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from fixture_design.contacts import Contact
+from fixture_design.contacts import Contact, Scale
 from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
 from fixture_design.tolerances import DEFAULT
 from fixture_design.verification.proofs import Case, Pyramids, coverage_fault, motion_fault, rank_fault, weights_fault
-from fixture_design.verification.rules import rule_fault
+from fixture_design.verification.residuals import residual_fault
+from fixture_design.verification.rules import SLIP_RULES, rule_fault
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,14 @@ def check(verdict: Verdict) -> list[str]:
     """
     contacts = {contact.name: contact for contact in verdict.contacts}
     problems = _repeated("the verdict", [contact.name for contact in verdict.contacts])
+    report = Scale(verdict.reference, verdict.length)
+    if not (np.isfinite(report.reference).all() and np.isfinite(report.length) and report.length > 0):
+        return [*problems, f"the scale has reference {report.reference.tolist()} and length {report.length}"]
     if "all" not in verdict.groups:
         problems.append("the verdict has no group 'all'")
     for name, group in verdict.groups.items():
         faults = _member_faults(name, group, contacts)
-        problems += faults or check_group(group, [contacts[member] for member in group.contacts])
+        problems += faults or check_group(group, [contacts[member] for member in group.contacts], report)
         problems += [f"{name}: there is no finding for {claim}" for claim in CLAIMS if claim not in group.findings]
     return problems + _requirement_faults(verdict)
 
@@ -89,21 +93,24 @@ def _repeated(place: str, names: Sequence[str]) -> list[str]:
     return [f"{place}: there are several contacts called {', '.join(twice)}"] if twice else []
 
 
-def check_group(group: GroupVerdict, contacts: Sequence[Contact]) -> list[str]:
-    """Problems of one group's findings; empty groups have no answers to have."""
+def check_group(group: GroupVerdict, contacts: Sequence[Contact], report: Scale | None = None) -> list[str]:
+    """Problems of one group's findings; empty groups have no answers to have.
+
+    ``report``: the scale of stated residuals; without it they are not computed again.
+    """
     if not contacts:
         answered = [(claim, finding.answer) for claim, finding in group.findings.items() if finding.answer]
         return [f"{group.name}: {claim} is {answer} of no contacts" for claim, answer in answered]
     case = Case(contacts, contacts[0].dimension)
     problems = []
     for claim, finding in group.findings.items():
-        problem = _fault(claim, finding, case.opened if claim in _WITH_CLEARANCE_OPEN else case)
+        problem = _fault(claim, finding, case.opened if claim in _WITH_CLEARANCE_OPEN else case, report)
         if problem:
             problems.append(f"{group.name}: {claim} {finding.answer}: {problem}")
     return problems
 
 
-def _fault(claim: str, finding: Finding, case: Case) -> str | None:
+def _fault(claim: str, finding: Finding, case: Case, report: Scale | None) -> str | None:
     if finding.answer is None:
         return "there are contacts, so there must be an answer"
     if finding.margin is not None and not np.isfinite(finding.margin):
@@ -113,24 +120,26 @@ def _fault(claim: str, finding: Finding, case: Case) -> str | None:
     proof = _PROOFS.get((claim, finding.answer))
     if proof is None:
         return "no such question is known"
-    return _proof_fault(proof, claim, finding, case) or _margin_fault(finding)
+    pyramids = Pyramids(finding.edges or 0, finding.tangents or {}) if proof.friction else None
+    fault = _proof_fault(proof, claim, finding, case, pyramids) or _margin_fault(finding)
+    if fault or report is None:
+        return fault
+    return residual_fault(finding, replace(case, given=report), pyramids)
 
 
-def _proof_fault(proof: _Proof, claim: str, finding: Finding, case: Case) -> str | None:
-    evidence, pyramids = finding.evidence, None
+def _proof_fault(proof: _Proof, claim: str, finding: Finding, case: Case, pyramids: Pyramids | None) -> str | None:
+    evidence = finding.evidence
     rule = evidence.rule if isinstance(evidence, Motion | Singular) else None
     if rule is not None and isinstance(evidence, Motion | Singular):
         fault = rule_fault(rule, claim, finding.answer, evidence.motion, case.contacts)
         if fault:
             return fault
-    if rule is not None and rule.name == "common slip" and proof.kind in ("motion", "rank") and not proof.strict:
+    if rule is not None and rule.name in SLIP_RULES and proof.kind in ("motion", "rank") and not proof.strict:
         return None
     if proof.kind == "motion" and isinstance(evidence, Motion):
         return motion_fault(evidence, case, strict=proof.strict, friction=proof.friction, nominal=rule is not None)
     if proof.kind == "rank" and isinstance(evidence, Singular):
         return rank_fault(evidence, case, full=proof.full, nominal=rule is not None)
-    if proof.friction:
-        pyramids = Pyramids(finding.edges or 0, finding.tangents or {})
     if proof.kind == "weights" and isinstance(evidence, tuple) and all(isinstance(w, Weights) for w in evidence):
         for weights in evidence:
             fault = weights_fault(weights, case, closes=proof.closes, pyramids=pyramids)

@@ -19,8 +19,7 @@ from math import prod
 
 from fixture_design.analysis import Restraint
 from fixture_design.arrays import Point
-from fixture_design.contacts import Contact, Scale
-from fixture_design.contacts.polyhedral import matching
+from fixture_design.contacts import Contact, Scale, matching
 from fixture_design.layout import Answer, Finding, Singular
 from fixture_design.tolerances import COPLANAR_ANGLE, Tolerances
 

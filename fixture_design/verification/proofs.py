@@ -26,7 +26,7 @@ from fixture_design.contacts import (
     velocity,
 )
 from fixture_design.layout import Motion, Singular, Weights
-from fixture_design.tolerances import DEFAULT, ROUND_OFF, WITNESS
+from fixture_design.tolerances import DEFAULT, SUM_ROUNDING, WITNESS
 
 #: A clause of a contact: (contact name, its place among the contact's clauses).
 Place = tuple[str, int]
@@ -34,10 +34,15 @@ Place = tuple[str, int]
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Contacts (possibly none), the dimension of their space's motions, and the scale of their rows: their own."""
+    """Contacts (possibly none), the dimension of their space's motions, and the scale of their rows.
+
+    Attributes:
+        given: the scale; by default the contacts' own, in which proofs are judged.
+    """
 
     contacts: Sequence[Contact]
     dimension: int
+    given: Scale | None = None
 
     @property
     def opened(self) -> Case:
@@ -46,7 +51,7 @@ class Case:
 
     @cached_property
     def scale(self) -> Scale:
-        return scale_of(self.contacts)
+        return self.given or scale_of(self.contacts)
 
     @cached_property
     def limit(self) -> float:
@@ -54,7 +59,7 @@ class Case:
         if not self.contacts:
             return WITNESS
         farthest = max(float(np.linalg.norm(contact.point)) for contact in self.contacts)
-        return max(WITNESS, 100 * ROUND_OFF * (1 + farthest / self.scale.length))
+        return max(WITNESS, SUM_ROUNDING * (1 + farthest / self.scale.length))
 
     @property
     def near(self) -> float:
@@ -91,7 +96,7 @@ class Pyramids:
     edges: int
     tangents: Mapping[str, Sequence[Point]]
 
-    def forces(self, contact: Contact) -> list[tuple[Points, Rows]] | str:
+    def forces(self, contact: Contact) -> list[tuple[Points, Rows | None]] | str:
         """The edges of each normal of a contact, forces and moments, or what is wrong with its tangents.
 
         Any unit tangent will do: every edge n + mu t is in the friction cone.
@@ -106,6 +111,16 @@ class Pyramids:
             return f"{contact.name} has a tangent that is not a unit vector across its normal"
         mu, torsion = contact.friction, contact.torsion
         return [contact_edges(normal, mu, torsion, self.edges, first=tangent) for normal, tangent in pairs]
+
+
+def unit_forces(contact: Contact, pyramids: Pyramids | None) -> list[tuple[Points, Rows | None]] | str:
+    """Forces and moments of each normal's rows, of unit normal component; without pyramids the normals themselves.
+
+    Or what is wrong with the pyramids' tangents.
+    """
+    if pyramids is not None:
+        return pyramids.forces(contact)
+    return [(unit_normal(normal)[None, :], None) for normal in contact.normals]
 
 
 def _is_tangent(tangent: Point, normal: Point) -> bool:
@@ -168,7 +183,7 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyra
     rank = rows.shape[1]
     smallest = sizes[rank - 1] if len(sizes) >= rank else 0.0
     margin = (smallest - residual) / (1 + float(np.linalg.norm(weights))) - float(errors.max())
-    if margin <= 100 * ROUND_OFF * sizes[0]:
+    if margin <= SUM_ROUNDING * sizes[0]:
         return f"the weights do not balance and span: {margin:.1e}"
     if not closes:
         return None  # closed, and so without interior, however far the normals are off
@@ -176,7 +191,7 @@ def weights_fault(evidence: Weights, case: Case, *, closes: bool, pyramids: Pyra
     if len(set(basis)) != rank or len(evidence.basis) != rank or not np.all(weights[basis] > 0):
         return "the basis is not one row of positive weight for every dimension"
     independent = np.linalg.svd(rows[basis], compute_uv=False)
-    return None if independent[-1] > 100 * ROUND_OFF * independent[0] else "the basis rows are not independent"
+    return None if independent[-1] > SUM_ROUNDING * independent[0] else "the basis rows are not independent"
 
 
 def rank_fault(evidence: Singular, case: Case, *, full: bool, nominal: bool = False) -> str | None:
@@ -264,7 +279,7 @@ def _weighted_rows(
     rows, values, errors, labels = [], [], [], []
     for contact in case.contacts:
         mu = contact.friction if pyramids else 0.0
-        forces = pyramids.forces(contact) if pyramids else [(unit_normal(n)[None, :], None) for n in contact.normals]
+        forces = unit_forces(contact, pyramids)
         if isinstance(forces, str):
             return forces
         remaining = iter(forces)

@@ -11,10 +11,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fixture_design.arrays import Vector
-from fixture_design.contacts import Contact, motion_scaled, scale_of, unit_normal, velocity
+from fixture_design.contacts import Contact, Scale, motion_scaled, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Counted, Rule, RuleName
-from fixture_design.tolerances import COPLANAR_ANGLE, ROUND_OFF, SLIP_ERRORS, WITNESS
+from fixture_design.tolerances import COPLANAR_ANGLE, SLIP_ERRORS, SUM_ROUNDING, WITNESS
 
+#: Rules that confirm their motion themselves.
+SLIP_RULES = ("common slip", "slip or leave")
 #: Claims that mean "not closed", and how they are answered then.
 _NOT_CLOSED = {("form_closure", Answer.NO), ("accessible", Answer.YES), ("force_closure", Answer.NO)}
 
@@ -24,7 +26,7 @@ def rule_fault(
 ) -> str | None:
     """What is wrong with a rule as the reason of a claim's answer; None if nothing is.
 
-    ``motion``: the evidence's. A common slip is checked here altogether, the motion of other rules by its products.
+    ``motion``: the evidence's. Slips are checked here altogether, the motion of other rules by its products.
     """
     check = _RULES.get(rule.name)
     if check is None:
@@ -63,28 +65,66 @@ def _common_slip(
     """The motion is among each surface's own, within the error; and these are tangent to the surface where touched."""
     if claimed not in {*_NOT_CLOSED, ("deterministic", Answer.NO)}:
         return "a common slip does not tell that"
-    if motion is None or motion.shape != (6,) or not (np.isfinite(motion).all() and motion.any()):
+    unit = _unit(motion, scale_of(contacts))
+    if unit is None:
         return "there is no motion to slip"
+    return next(filter(None, (_slip_fault(contact, unit, scale_of(contacts)) for contact in contacts)), None)
+
+
+def _slip_or_leave(
+    rule: Rule, claimed: tuple[str, Answer | None], motion: Vector | None, contacts: Sequence[Contact]
+) -> str | None:
+    """The motion slips along the surfaces of some contacts, and leaves all others by more than errors could undo."""
+    if claimed not in _NOT_CLOSED:
+        return "slipping and leaving do not tell that"
     scale = scale_of(contacts)
+    unit = _unit(motion, scale)
+    if unit is None or motion is None:
+        return "there is no motion to slip"
+    size = float(np.linalg.norm(motion_scaled(motion, scale.reference, scale.length)))
+    faults = [_slip_fault(contact, unit, scale) for contact in contacts]
+    slipped = [contact for contact, fault in zip(contacts, faults, strict=True) if fault is None]
+    undone = max((_slip_limit(contact, scale) for contact in slipped), default=0.0)
+    for contact, fault in zip(contacts, faults, strict=True):
+        moves = velocity(motion, contact.point) / size
+        closing = max(float(unit_normal(normal) @ moves) for normal in contact.normals)
+        reach = float(np.hypot(1.0, np.linalg.norm(contact.point - scale.reference) / scale.length))
+        error = contact.provenance.normal_error * float(np.linalg.norm(moves))
+        if fault is not None and closing + error + undone * reach > 0:
+            return f"the motion does not leave {contact.name}, and {fault}"
+    return None
+
+
+def _unit(motion: Vector | None, scale: Scale) -> Vector | None:
+    """A spatial motion at size one in the contacts' scale; None if it is none."""
+    if motion is None or motion.shape != (6,) or not (np.isfinite(motion).all() and motion.any()):
+        return None
     unit = motion_scaled(motion, scale.reference, scale.length)
-    unit = unit / np.linalg.norm(unit)
-    for contact in contacts:
-        error = contact.provenance.normal_error
-        lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
-        limit = SLIP_ERRORS * error * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
-        if error > COPLANAR_ANGLE or len(contact.slips) != len(contact.normals):
-            return f"it is not known how {contact.name}'s surfaces slip"
-        for normal, slips in zip(contact.normals, contact.slips, strict=True):
-            scaled = np.array([motion_scaled(slip, scale.reference, scale.length) for slip in slips])
-            moves = np.array([velocity(slip, contact.point) for slip in slips])
-            sizes = np.linalg.norm(scaled, axis=1)
-            if not len(slips) or not np.isfinite(sizes).all() or not sizes.all():
-                return f"{contact.name} has a surface without motions of its own"
-            if (np.abs(moves @ unit_normal(normal)) > limit * sizes).any():
-                return f"{contact.name}'s surface is said to move along itself, and does not"
-            weights = np.linalg.lstsq(scaled.T, unit, rcond=None)[0]
-            if np.linalg.norm(scaled.T @ weights - unit) > limit:
-                return f"the motion does not move {contact.name}'s surface along itself"
+    return unit / np.linalg.norm(unit)
+
+
+def _slip_limit(contact: Contact, scale: Scale) -> float:
+    """How far a contact's normal error may move its surface's own motions, and rounding [-]."""
+    lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
+    return SLIP_ERRORS * contact.provenance.normal_error * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
+
+
+def _slip_fault(contact: Contact, unit: Vector, scale: Scale) -> str | None:
+    """Why a motion is not known to move all surfaces of a contact along themselves; None if it is."""
+    limit = _slip_limit(contact, scale)
+    if contact.provenance.normal_error > COPLANAR_ANGLE or len(contact.slips) != len(contact.normals):
+        return f"it is not known how {contact.name}'s surfaces slip"
+    for normal, slips in zip(contact.normals, contact.slips, strict=True):
+        scaled = np.array([motion_scaled(slip, scale.reference, scale.length) for slip in slips])
+        moves = np.array([velocity(slip, contact.point) for slip in slips])
+        sizes = np.linalg.norm(scaled, axis=1)
+        if not len(slips) or not np.isfinite(sizes).all() or not sizes.all():
+            return f"{contact.name} has a surface without motions of its own"
+        if (np.abs(moves @ unit_normal(normal)) > limit * sizes).any():
+            return f"{contact.name}'s surface is said to move along itself, and does not"
+        weights = np.linalg.lstsq(scaled.T, unit, rcond=None)[0]
+        if np.linalg.norm(scaled.T @ weights - unit) > limit:
+            return f"the motion does not move {contact.name}'s surface along itself"
     return None
 
 
@@ -92,6 +132,7 @@ _RULES: dict[RuleName, Callable[[Rule, tuple[str, Answer | None], Vector | None,
     "few rows": _few_rows,
     "few normals": _few_normals,
     "common slip": _common_slip,
+    "slip or leave": _slip_or_leave,
 }
 
 
@@ -130,5 +171,5 @@ def _rows_at_most(block: Sequence[Contact]) -> int:
         return len(block[0].clauses)
     points = np.array([contact.point for contact in block])
     sizes = np.linalg.svd(points - points[0], compute_uv=False)
-    limit = WITNESS * float(sizes[0]) + 100 * ROUND_OFF * float(np.abs(points).max())
+    limit = WITNESS * float(sizes[0]) + SUM_ROUNDING * float(np.abs(points).max())
     return 1 + min(int(np.sum(sizes > limit)), points.shape[1] - 1)

@@ -63,6 +63,16 @@ def test_a_contact_more_never_lowers_closure(layout: GeneratedLayout) -> None:
         assert after.answer is Answer.YES
 
 
+def test_the_laws_have_layouts_to_judge() -> None:
+    """Of those closed, and of those with a margin, there are enough that the laws above say something."""
+    closed = [form_closure(Restraint.of(layout.contacts)).answer is Answer.YES for layout in LAYOUTS]
+    assert sum(closed[::2]) >= 4
+    assert sum(closed[1::2]) >= 4
+    margins = [form_closure(Restraint.of(layout.contacts)).margin for layout in LAYOUTS[::2]]
+    assert sum(margin is not None for margin in margins) >= 20
+    assert sum(clear_of_ties(layout) for layout in LAYOUTS) >= 40
+
+
 @pytest.mark.parametrize("layout", LAYOUTS[1::2], ids=str)
 def test_friction_only_helps(layout: GeneratedLayout) -> None:
     rubbing = [replace(contact, friction=0.3) for contact in layout.contacts]

@@ -94,3 +94,61 @@ def test_a_motion_that_is_no_slip_is_refused() -> None:
     for motion in (np.array([1.0, 0, 0, 0, 0, 0]), np.array([0, 0, 0, 0, 1.0, 0]), np.zeros(6), np.zeros(3)):
         forged = replace(found, evidence=replace(found.evidence, motion=motion))
         assert check_group(replace(verdict, findings={"form_closure": forged}), restraint.contacts) != []
+
+
+def pinned_plate(error: float) -> list[Contact]:
+    """A plate on three rests, with two pins in bores whose fitted axes are off z by ``error``."""
+    contacts = []
+    for k, (x, y) in enumerate([(0.0, 0.0), (0.1, 0.0), (0.0, 0.08)]):
+        point, up = np.array([x, y, 0.0]), np.array([0.0, 0.0, -1.0])
+        contacts.append(Contact(f"R{k}", "locator", point, ((up,),), feature="facet 1"))
+    tilt = np.array([error / 3, -error / 2, 1.0])
+    for k, (x, y) in enumerate([(0.02, 0.03), (0.08, 0.05)]):
+        centre = np.array([x, y, 0.01])
+        slips = np.vstack([np.concatenate([np.cross(centre, tilt), tilt]), np.concatenate([tilt, np.zeros(3)])])
+        for turn, angle in enumerate(np.arange(4) * np.pi / 2 + 0.3 + k):
+            normal = np.array([np.cos(angle), np.sin(angle), error / 2])
+            contacts.append(
+                Contact(
+                    f"P{k}#{turn}",
+                    "locator",
+                    centre - 0.004 * normal,
+                    ((normal,),),
+                    provenance=Provenance("fitted", error),
+                    feature=f"cylinder {k}",
+                    slips=(slips,),
+                )
+            )
+    return contacts
+
+
+def test_a_plate_lifts_off_its_rests_along_its_pins() -> None:
+    """Undecided by the normals alone: opposed normals in a bore are tied only up to what the fit is off."""
+    restraint = Restraint.of(pinned_plate(1e-6))
+    finding = form_closure(restraint)
+    assert finding.answer is Answer.NO
+    assert isinstance(finding.evidence, Motion)
+    assert finding.evidence.rule is not None
+    assert finding.evidence.rule.name == "slip or leave"
+    np.testing.assert_allclose(finding.evidence.motion / finding.evidence.motion[2], [0, 0, 1, 0, 0, 0], atol=1e-5)
+    verdict = group_verdict(Group("all", restraint.contacts, ()), restraint.report, [], restraint.tolerances)
+    assert check_group(verdict, restraint.contacts) == []
+
+
+def test_a_clamp_on_the_plate_keeps_it_from_lifting() -> None:
+    clamp = Contact("K", "clamp", np.array([0.05, 0.04, 0.02]), ((np.array([0.0, 0.0, 1.0]),),), feature="facet 2")
+    finding = form_closure(Restraint.of([*pinned_plate(1e-6), clamp]))
+    assert not isinstance(finding.evidence, Motion)
+
+
+def test_a_motion_that_leaves_too_little_is_refused() -> None:
+    """Leaving counts only beyond what the slips may be off; and what neither slips nor leaves is named."""
+    restraint = Restraint.of(pinned_plate(1e-6))
+    verdict = group_verdict(Group("all", restraint.contacts, ()), restraint.report, [], restraint.tolerances)
+    found = verdict.findings["form_closure"]
+    assert isinstance(found.evidence, Motion)
+    for motion in ([0, 0, -1.0, 0, 0, 0], [1.0, 0, 1.0, 0, 0, 0], [0, 0, 1e-7, 1.0, 0, 0]):
+        forged = replace(found, evidence=replace(found.evidence, motion=np.array(motion)))
+        assert check_group(replace(verdict, findings={"form_closure": forged}), restraint.contacts) != []
+    vague = [replace(contact, slips=()) for contact in restraint.contacts]
+    assert check_group(replace(verdict, findings={"form_closure": found}), vague) != []

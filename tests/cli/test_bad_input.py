@@ -72,6 +72,10 @@ CASES: dict[str, tuple[str | bytes | None, list[str]]] = {
             "raise `surface_gap` (10 um)",
         ],
     ),
+    "a gap as large as the part": (
+        on_part("{mesh: closed.obj}").replace("elements:", "surface_gap: 1.0e+10\nelements:", 1),
+        ["`surface_gap` is 1e+10 m, and the part 'closed' is only "],
+    ),
     "inside": (
         on_part("{mesh: closed.obj}", at="[0.2, 0.2, 0.001]"),
         ["line 4, elements[0]: element 'L1' is 1 mm inside 'closed'", "nearest: facet "],

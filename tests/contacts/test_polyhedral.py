@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
-from fixture_design.contacts.polyhedral import POINT_PIECE, admits, polyhedral_clauses
+from fixture_design.contacts import Clause
+from fixture_design.contacts.polyhedral import polyhedral_clauses
 from tests.geometry.parts import unit
 
 X, Y, Z = np.eye(3)
+#: The tangent cone of a point, {o}: what a tip without volume has for a piece.
+POINT_PIECE = (*np.eye(3), *-np.eye(3))
 WEDGE = (X - Z, -X - Z)
 APEX = (X - Z, -X - Z, Y - Z, -Y - Z)
+
+
+def admits(clauses: Sequence[Clause], velocity: np.ndarray) -> bool:
+    """Whether a displacement of the contact point is admissible: n . v <= 0 for some n of every clause."""
+    return all(any(normal @ velocity <= 0 for normal in clause) for clause in clauses)
+
 
 #: Pieces of the part, pieces of the body, clauses.
 KNOWN = {

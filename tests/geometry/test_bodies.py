@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from fixture_design.contacts import Contact
 from fixture_design.errors import GeometryError, PenetrationError
 from fixture_design.geometry import contacts_of_elements
-from fixture_design.layout import Answer, Body, Layout, Part, Pose
+from fixture_design.layout import Answer, Body, Element, Layout, Motion, Part, Pose
 from fixture_design.verification import check, verify
 from tests.geometry.parts import Mesh, box, circle, part, prism, unit, write
 
@@ -170,6 +171,25 @@ def test_shaft_in_a_vee_touches_along_two_lines(tmp_path: Path) -> None:
         assert normals(found) == {(round(-S, 6), 0.0, round(-S, 6)), (round(S, 6), 0.0, round(-S, 6))}
         finding = verify(layout).groups["all"].findings["deterministic"]
         assert finding.answer is Answer.NO
+
+
+def test_shaft_of_rounded_coordinates_turns_under_its_clamp(tmp_path: Path) -> None:
+    """Its fitted normals are off by 1e-7, which leaves the tie of its spin open; that the surface slips does not."""
+    file = tmp_path / "shaft.stl"
+    vertices, triangles = along_y(prism(circle(0.015, 48), 0.05))
+    trimesh.Trimesh(vertices, triangles, process=False).export(file)
+    pose = Pose.from_xyz_rpy([0, 0, 0.015 / S], [0, 0, 0])
+    shaft = Part("shaft", "mesh", file, None, 1.0, pose)
+    tops = tuple(Element(f"K{k}", "clamp", np.array([0.0, -0.01 * k, 0.015 / S + 0.015])) for k in range(1, 4))
+    layout = replace(layout_of(shaft, body(vee(tmp_path))), elements=tops, friction=0.0)
+    verdict = verify(layout)
+    assert verdict.groups["all"].findings["form_closure"].answer is Answer.NO
+    assert verdict.groups["all"].findings["deterministic"].answer is Answer.NO
+    evidence = verdict.groups["all"].findings["form_closure"].evidence
+    assert isinstance(evidence, Motion)
+    assert evidence.rule is not None
+    assert evidence.rule.name == "common slip"
+    assert check(verdict) == []
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.03])

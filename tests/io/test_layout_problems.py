@@ -309,7 +309,11 @@ CASES = {
     ),
     "flat polygon": (
         f"{HEAD}space: planar\npart: {{polygon: [[0, 0], [1, 1], [2, 2]]}}\n",
-        "line 3, part.polygon: the polygon encloses no area",
+        "line 3, part.polygon: the polygon encloses no area: its sides cross, or lie on each other",
+    ),
+    "friction without end": (
+        f"{HEAD}friction: 1.0e+300\n",
+        "line 2, friction: 'friction' is out of range; found 1e+300; expected a number <= 1000",
     ),
     "mesh in the plane": (
         f"{HEAD}space: planar\npart: {{mesh: a.stl}}\n",

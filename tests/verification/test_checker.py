@@ -38,6 +38,11 @@ def forged(verdict: Verdict, claim: str, finding: Finding) -> Verdict:
     return replace(verdict, groups={"all": group})
 
 
+def faults(verdict: Verdict) -> list[str]:
+    """What is wrong with the evidence itself, however its residual is stated."""
+    return [problem for problem in check(verdict) if "residual" not in problem]
+
+
 def evidence_of(verdict: Verdict, claim: str) -> tuple[Weights, ...]:
     evidence = verdict.groups["all"].findings[claim].evidence
     assert isinstance(evidence, tuple)
@@ -52,12 +57,12 @@ def test_genuine_evidence_is_confirmed(names: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("motion", [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1e-6, 0.0]])
 def test_a_motion_that_a_contact_forbids(motion: list[float]) -> None:
     finding = Finding(Answer.NO, 0.0, Motion(np.array(motion), 0.0), 0.0)
-    assert "not admissible" in check(forged(verdict_of(OPEN), "form_closure", finding))[0]
+    assert "not admissible" in faults(forged(verdict_of(OPEN), "form_closure", finding))[0]
 
 
 def test_a_motion_that_only_slides_is_not_strong() -> None:
     finding = Finding(Answer.YES, 0.0, Motion(np.array([1.0, 0.0, 0.0]), 0.0), 0.0)
-    assert check(forged(verdict_of(OPEN), "strongly_accessible", finding)) != []
+    assert faults(forged(verdict_of(OPEN), "strongly_accessible", finding)) != []
 
 
 def doubled(weights: Weights) -> Weights:
@@ -86,7 +91,7 @@ def other_branch(weights: Weights) -> Weights:
 def test_forged_weights(forge: Callable[[Weights], Weights]) -> None:
     verdict = verdict_of(CLOSED)
     evidence = tuple(forge(weights) for weights in evidence_of(verdict, "form_closure"))
-    assert check(forged(verdict, "form_closure", Finding(Answer.YES, 0.1, evidence, 0.0))) != []
+    assert faults(forged(verdict, "form_closure", Finding(Answer.YES, 0.1, evidence, 0.0))) != []
 
 
 KINDS = {
@@ -119,7 +124,7 @@ def test_only_evidence_of_the_right_kind_proves(claim: str, answer: Answer, kind
         for w in evidence_of(verdict_of(CLOSED), "form_closure")
     )
     evidence = {**KINDS, "balance": balance, "closure": closure}[kind]
-    problems = check(forged(verdict, claim, Finding(answer, None, evidence, 0.0)))
+    problems = faults(forged(verdict, claim, Finding(answer, None, evidence, 0.0)))
     assert (problems == []) is (kind in PROVED_BY[claim, answer])
 
 
@@ -127,7 +132,7 @@ def test_only_evidence_of_the_right_kind_proves(claim: str, answer: Answer, kind
 @pytest.mark.parametrize(("claim", "answer"), [("form_closure", Answer.NO), ("strongly_accessible", Answer.YES)])
 def test_motions_that_are_none(claim: str, answer: Answer, motion: np.ndarray) -> None:
     finding = Finding(answer, None, Motion(motion, 0.0), 0.0)
-    assert "finite vector" in check(forged(verdict_of(CLOSED), claim, finding))[0]
+    assert "finite vector" in faults(forged(verdict_of(CLOSED), claim, finding))[0]
 
 
 def edited(weights: Weights, **values: tuple[float, ...]) -> Weights:
@@ -152,7 +157,7 @@ def edited(weights: Weights, **values: tuple[float, ...]) -> Weights:
 def test_malformed_weights_are_reported(forge: Callable[[Weights], Weights]) -> None:
     verdict = verdict_of(CLOSED)
     evidence = tuple(forge(weights) for weights in evidence_of(verdict, "form_closure"))
-    assert check(forged(verdict, "form_closure", Finding(Answer.YES, 0.1, evidence, 0.0))) != []
+    assert faults(forged(verdict, "form_closure", Finding(Answer.YES, 0.1, evidence, 0.0))) != []
 
 
 def test_balance_without_rank_is_no_closure() -> None:
@@ -164,7 +169,7 @@ def test_balance_without_rank_is_no_closure() -> None:
         verdict = verify(Layout("pairs", "planar", contacts=tuple(contacts)))
         weights = Weights({f"C{i}": (1.0,) for i in range(4)}, (("C0", 0), ("C1", 0), ("C2", 0)), (), 0.0)
         assert check(verdict) == []
-        assert check(forged(verdict, "form_closure", Finding(Answer.YES, None, (weights,), 0.0))) != []
+        assert faults(forged(verdict, "form_closure", Finding(Answer.YES, None, (weights,), 0.0))) != []
 
 
 def test_a_choice_that_takes_two_alternatives_of_one_clause() -> None:
@@ -175,7 +180,7 @@ def test_a_choice_that_takes_two_alternatives_of_one_clause() -> None:
     )
     verdict = verify(Layout("twice", "planar", contacts=contacts))
     claimed = Singular(3, None, ((("A", 0, 1), ("A", 0, 0)),), 0.0)
-    assert "chosen twice" in check(forged(verdict, "deterministic", Finding(Answer.YES, None, claimed, 0.0)))[0]
+    assert "chosen twice" in faults(forged(verdict, "deterministic", Finding(Answer.YES, None, claimed, 0.0)))[0]
 
 
 def test_normal_errors_count_against_a_proof() -> None:
@@ -189,7 +194,7 @@ def test_normal_errors_count_against_a_proof() -> None:
 def test_margins_and_requirements_must_agree() -> None:
     verdict = verdict_of(CLOSED)
     finding = replace(verdict.groups["all"].findings["form_closure"], margin=-0.1)
-    assert "margin" in check(forged(verdict, "form_closure", finding))[0]
+    assert "margin" in faults(forged(verdict, "form_closure", finding))[0]
     lying = replace(verdict, requirements=(RequirementVerdict("all", "accessible", Answer.YES),), satisfied=Answer.NO)
     assert len(check(lying)) == 2
 
@@ -197,29 +202,29 @@ def test_margins_and_requirements_must_agree() -> None:
 def test_a_branch_left_out() -> None:
     verdict = verdict_of(CLOSED)
     finding = Finding(Answer.YES, 0.1, evidence_of(verdict, "form_closure")[:1], 0.0)
-    assert "branch" in check(forged(verdict, "form_closure", finding))[0]
+    assert "branch" in faults(forged(verdict, "form_closure", finding))[0]
 
 
 def test_weights_of_an_open_layout_do_not_prove_closure() -> None:
     """P1, P3 and P4 balance, but with rank 2: closure without a rank test is the classic mistake."""
     verdict = verdict_of(OPEN)
     finding = Finding(Answer.YES, 0.1, evidence_of(verdict, "strongly_accessible"), 0.0)
-    assert check(forged(verdict, "form_closure", finding)) != []
+    assert faults(forged(verdict, "form_closure", finding)) != []
 
 
 def test_no_evidence_and_wrong_rank() -> None:
     verdict = verdict_of(OPEN)
-    assert check(forged(verdict, "form_closure", Finding(Answer.YES, 0.1))) != []
-    assert check(forged(verdict, "deterministic", Finding(Answer.YES, 0.1, Singular(2, None, ((),), 0.0)))) != []
+    assert faults(forged(verdict, "form_closure", Finding(Answer.YES, 0.1))) != []
+    assert faults(forged(verdict, "deterministic", Finding(Answer.YES, 0.1, Singular(2, None, ((),), 0.0)))) != []
     noticed = Singular(2, np.array([0.0, 1.0, 0.0]), (), 0.0)
-    assert check(forged(verdict, "deterministic", Finding(Answer.NO, 0.0, noticed))) != []
+    assert faults(forged(verdict, "deterministic", Finding(Answer.NO, 0.0, noticed))) != []
 
 
 def test_rank_deficiency_is_found_by_the_checker_too() -> None:
     verdict = verdict_of(("P3", "P4"))
     claimed = Finding(Answer.YES, 0.1, Singular(3, None, ((),), 0.0), 0.0)
     assert check(verdict) == []
-    assert check(forged(verdict, "deterministic", claimed)) != []
+    assert faults(forged(verdict, "deterministic", claimed)) != []
 
 
 def test_full_rank_of_some_branches_is_not_that_of_all() -> None:
@@ -236,7 +241,7 @@ def test_full_rank_of_some_branches_is_not_that_of_all() -> None:
     assert isinstance(finding.evidence, Singular)
     assert len(finding.evidence.choices) == 2
     partly = replace(finding.evidence, choices=finding.evidence.choices[1:])
-    assert "covered" in check(forged(verdict, "deterministic", replace(finding, evidence=partly)))[0]
+    assert "covered" in faults(forged(verdict, "deterministic", replace(finding, evidence=partly)))[0]
 
 
 def without(verdict: Verdict, group: str, claim: str) -> Verdict:
@@ -301,7 +306,7 @@ def test_names_of_groups_and_contacts() -> None:
 def test_margins_are_finite(margin: float) -> None:
     verdict = verdict_of(CLOSED)
     finding = replace(verdict.groups["all"].findings["form_closure"], margin=margin)
-    assert "finite" in check(forged(verdict, "form_closure", finding))[0]
+    assert "finite" in faults(forged(verdict, "form_closure", finding))[0]
 
 
 @pytest.mark.parametrize("name", ["few rows", "few normals", "common slip"])
@@ -310,9 +315,9 @@ def test_no_rule_holds_where_all_contacts_have_clearance(name: RuleName) -> None
     verdict = verify(Layout("loose", "planar", contacts=loose))
     assert check(verdict) == []
     ruled = Motion(np.eye(3)[0], -1.0, Rule(name, ()))
-    assert "no contacts" in check(forged(verdict, "accessible", Finding(Answer.YES, 1.0, ruled, -1.0)))[0]
+    assert "no contacts" in faults(forged(verdict, "accessible", Finding(Answer.YES, 1.0, ruled, -1.0)))[0]
     of_space = Finding(Answer.YES, 1.0, Motion(np.eye(6)[0], -1.0), -1.0)
-    assert "finite vector" in check(forged(verdict, "accessible", of_space))[0]
+    assert "finite vector" in faults(forged(verdict, "accessible", of_space))[0]
 
 
 def test_a_short_rank_and_its_choice_are_possible_ones() -> None:
@@ -321,6 +326,34 @@ def test_a_short_rank_and_its_choice_are_possible_ones() -> None:
     assert isinstance(finding.evidence, Singular)
     for rank in (-1, 3, 77):
         wrong = replace(finding, evidence=replace(finding.evidence, rank=rank))
-        assert "rank" in check(forged(verdict, "deterministic", wrong))[0]
+        assert "rank" in faults(forged(verdict, "deterministic", wrong))[0]
     wrong = replace(finding, evidence=replace(finding.evidence, choices=((("P9", 0, 0),),)))
-    assert "no alternative" in check(forged(verdict, "deterministic", wrong))[0]
+    assert "no alternative" in faults(forged(verdict, "deterministic", wrong))[0]
+
+
+@pytest.mark.parametrize(
+    ("names", "claim"),
+    [(OPEN, "form_closure"), (OPEN, "strongly_accessible"), (CLOSED, "form_closure"), (OPEN[:2], "deterministic")],
+)
+def test_a_residual_that_is_not_the_evidence_s(names: tuple[str, ...], claim: str) -> None:
+    """The finding's own, or those of its evidence, are not what the rows in the verdict's scale give."""
+    verdict = verdict_of(names)
+    finding = verdict.groups["all"].findings[claim]
+    assert finding.residual is not None
+    off = finding.residual + 1e-3
+    evidence = finding.evidence
+    assert evidence is not None
+    moved = (
+        tuple(replace(w, residual=off) for w in evidence)
+        if isinstance(evidence, tuple)
+        else replace(evidence, residual=off)
+    )
+    for change in (replace(finding, residual=off), replace(finding, evidence=moved, residual=off)):
+        (problem,) = check(forged(verdict, claim, change))
+        assert "residual" in problem
+
+
+def test_a_scale_that_is_none() -> None:
+    verdict = verdict_of(OPEN)
+    for length in (0.0, -1.0, float("nan"), float("inf")):
+        assert any("length" in problem for problem in check(replace(verdict, length=length)))
