@@ -29,7 +29,7 @@ def common_slip(contacts: Sequence[Contact], tolerances: Tolerances = DEFAULT) -
         surfaces are not known, or if normals are off by so much that surfaces of different directions would be one.
     """
     known = all(len(contact.slips) == len(contact.normals) for contact in contacts)
-    if not known or max(contact.provenance.normal_error for contact in contacts) > COPLANAR_ANGLE:
+    if not known or max(contact.provenance.off_slip for contact in contacts) > COPLANAR_ANGLE:
         return None
     scale = scale_of(contacts)
     zero = tolerances.at_offset(scale.offset).zero
@@ -54,6 +54,6 @@ def off_slips(slips: Rows, scale: Scale) -> Rows:
 
 
 def slip_error(contact: Contact, scale: Scale) -> float:
-    """How far a contact's normal error may move its surface's own motions, at most [-]."""
+    """How far the error of a contact's surface may move its surface's own motions, at most [-]."""
     lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
-    return SLIP_ERRORS * contact.provenance.normal_error * float(np.hypot(1.0, lever))
+    return SLIP_ERRORS * contact.provenance.off_slip * float(np.hypot(1.0, lever))

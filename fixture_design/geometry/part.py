@@ -25,8 +25,9 @@ from fixture_design.geometry.shapes import (
     Vector3,
     Vertices,
 )
-from fixture_design.geometry.smooth_regions import Region, may_be_round, smooth_surfaces
+from fixture_design.geometry.smooth_regions import Region, fit_tolerance, may_be_round, part_size, smooth_surfaces
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
+from fixture_design.geometry.turned import TurnedPiece, coarse_errors, turned_pieces
 from fixture_design.geometry.winding import shells, winding_number
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
@@ -120,8 +121,30 @@ class PartGeometry:
         """The round surfaces that facets stand for, in the order of their names; of a faceted part those given."""
         noise = max(float(self.rounding.max()), self._facets.noise)
         return smooth_surfaces(
-            self.facets, self.vertices, self.triangles, noise, self._given_regions, look=not self.faceted
+            self.facets,
+            self.vertices,
+            self.triangles,
+            noise,
+            self._given_regions,
+            self._turned,
+            look=not self.faceted,
         )
+
+    @cached_property
+    def _turned(self) -> tuple[TurnedPiece, ...]:
+        """The pieces of surfaces of revolution that have rings of vertices; of a faceted part none."""
+        if self.faceted:
+            return ()
+        noise = max(float(self.rounding.max()), self._facets.noise)
+        tolerance, size = fit_tolerance(self.vertices, noise), part_size(self.vertices)
+        taken = sorted(self._given_facets)
+        return tuple(
+            turned_pieces(self.vertices, self.triangles, self.facet_of_triangle, taken, noise, tolerance, size)
+        )
+
+    @cached_property
+    def _turned_facets(self) -> frozenset[int]:
+        return frozenset(facet for piece in self._turned for facet in piece.facets)
 
     @cached_property
     def _given_regions(self) -> list[Region]:
@@ -144,7 +167,8 @@ class PartGeometry:
 
     @cached_property
     def _judged_again(self) -> dict[int, Provenance]:
-        return judged_again(self.facets, self._surface_of_facet, self.vertices, self.triangles)
+        doubts = coarse_errors(self._turned, self.facets, self.vertices, self.triangles)
+        return judged_again(self.facets, self._surface_of_facet, doubts, self.vertices, self.triangles)
 
     def surface_of_facet(self, facet: int) -> SmoothSurface | None:
         """The round surface that a facet stands for, if it is known."""
@@ -156,7 +180,7 @@ class PartGeometry:
         return self._judged_again.get(facet, own) if self._may_be_round(facet) else own
 
     def _may_be_round(self, facet: int) -> bool:
-        return facet in self._given_facets or may_be_round(self.facets[facet])
+        return facet in self._given_facets or facet in self._turned_facets or may_be_round(self.facets[facet])
 
     @cached_property
     def facet_of_triangle(self) -> OfTriangle:

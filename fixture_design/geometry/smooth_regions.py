@@ -16,9 +16,10 @@ import numpy as np
 
 from fixture_design.arrays import Indices
 from fixture_design.geometry.facets import Facet
-from fixture_design.geometry.round_fits import Patch, fitted, normal_error
+from fixture_design.geometry.round_fits import Patch, fitted, normal_error, refitted
 from fixture_design.geometry.shapes import Directions, FacetVectors, OfFacet, PerFacet, Triangles, Vertices
 from fixture_design.geometry.smooth_surface import RoundKind, RoundShape, SmoothSurface
+from fixture_design.geometry.turned import TurnedPiece
 from fixture_design.tolerances import ON_EDGE_ROUNDINGS, ROUND_FIT, SMOOTH_ANGLE
 
 #: Facets and vertices that a surface must have, so that it is no accident that they fit: three bevels between two flats
@@ -48,12 +49,23 @@ _VAGUE = 1e-2
 Region = tuple[RoundShape, list[int]]
 
 
+def fit_tolerance(vertices: Vertices, noise: float) -> float:
+    """How far vertices that are known to within ``noise`` may be off a round surface that they lie on [m]."""
+    return ON_EDGE_ROUNDINGS * noise + ROUND_FIT * part_size(vertices)
+
+
+def part_size(vertices: Vertices) -> float:
+    """The diagonal of the bounding box [m]."""
+    return float(np.linalg.norm(np.ptp(vertices, axis=0)))
+
+
 def smooth_surfaces(
     facets: Sequence[Facet],
     vertices: Vertices,
     triangles: Triangles,
     noise: float,
     given: Sequence[Region] = (),
+    turned: Sequence[TurnedPiece] = (),
     look: bool = True,
 ) -> tuple[SmoothSurface, ...]:
     """The round surfaces of a part, named by kind in the order of their places.
@@ -62,11 +74,17 @@ def smooth_surfaces(
         facets: those whose provenance is approximate may stand for one.
         noise: how well vertices are known [m].
         given: surfaces that are known exactly.
+        turned: pieces of surfaces of revolution.
         look: whether to look for others.
     """
     search = _Search.of(facets, vertices, triangles, noise)
     search.free -= {facet for _, members in given for facet in members}
+    bands = [piece for piece in turned if piece.smooth and piece.profile_error]
+    search.free -= {facet for piece in turned if piece.profile_error or not piece.smooth for facet in piece.facets}
     if look:
+        for piece in turned:
+            if piece.smooth and not piece.profile_error and not piece.is_plane:
+                search.try_turned(piece)
         for seed in search.seeds():
             search.try_seed(seed)
         search.merge()
@@ -79,6 +97,8 @@ def smooth_surfaces(
     for surface in found:
         counts[surface.kind] += 1
         named.append(replace(surface, name=f"{surface.kind} {counts[surface.kind]}"))
+    turns = sorted({piece.number for piece in bands})
+    named += [replace(search.band(piece), name=f"turned {turns.index(piece.number) + 1}") for piece in bands]
     return tuple(named)
 
 
@@ -141,7 +161,7 @@ class _Search:
         areas = np.linalg.norm(normals, axis=1)
         smooth = [{o: angle for o, angle in facet.angles.items() if abs(angle) < SMOOTH_ANGLE} for facet in facets]
         corners = [np.unique(triangles[facet.triangles]) for facet in facets]
-        size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+        size = part_size(vertices)
         return cls(
             vertices,
             corners,
@@ -153,7 +173,7 @@ class _Search:
             smooth,
             candidates,
             {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate"},
-            ON_EDGE_ROUNDINGS * noise + ROUND_FIT * size,
+            fit_tolerance(vertices, noise),
             noise,
             size,
         )
@@ -179,6 +199,38 @@ class _Search:
             return
         self.found.append((_one_way(best[0]), best[1]))
         self.free -= set(best[1])
+
+    def try_turned(self, piece: TurnedPiece) -> None:
+        """Fit a surface that rings of vertices have shown, and grow it over facets that other features cut."""
+        points = self._points(piece.facets)
+        shape = refitted(piece.shape, points)
+        fewest = _FEWEST[piece.shape.kind]
+        if shape is None or len(piece.facets) < fewest[0] or len(points) < fewest[1]:
+            return
+        if np.abs(shape.offsets(points)).max() > self.tolerance:
+            return
+        members = set(piece.facets)
+        if any(other in self.free and other not in members for facet in members for other in self.smooth[facet]):
+            seed = max(members & self.free, key=lambda facet: (self.areas[facet], facet), default=None)
+            if seed is not None:
+                members |= set(self._grown(shape, seed))
+        self.found.append((_one_way(shape), sorted(members)))
+        self.free -= members
+
+    def band(self, piece: TurnedPiece) -> SmoothSurface:
+        """The surface through two rings of a profile that is not known, without a name yet."""
+        members = piece.facets
+        points, middles = self._points(members), self.middles[members]
+        return SmoothSurface(
+            "",
+            piece.shape,
+            self._hollow(piece.shape, members),
+            np.array(members, dtype=np.int64),
+            float(np.abs(piece.shape.offsets(points)).max()),
+            piece.profile_error + piece.axis_error,
+            float(np.abs(piece.shape.offsets(middles)).max()),
+            piece.axis_error,
+        )
 
     def merge(self) -> None:
         """Make one of surfaces that are one: a slot cuts a bore in two, and the halves have no facet in common."""
@@ -223,7 +275,7 @@ class _Search:
         off = 0.0 if known else normal_error(shape, points, middles, error, self.noise, width)
         sagitta = float(np.abs(shape.offsets(middles)).max())
         return SmoothSurface(
-            shape.kind, shape, self._hollow(shape, members), np.array(members, dtype=np.int64), error, off, sagitta
+            shape.kind, shape, self._hollow(shape, members), np.array(members, dtype=np.int64), error, off, sagitta, off
         )
 
     def _patches(self, seed: int) -> Iterator[tuple[list[int], tuple[RoundKind, ...]]]:

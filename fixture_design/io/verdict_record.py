@@ -113,6 +113,8 @@ def _contact(contact: Contact) -> Data:
     # keys of soft tips, pins and edges alone
     lengths = {"torsion": contact.torsion, "clearance": contact.clearance}
     linked: Data = {} if contact.linked is None else {"linked": contact.linked}
+    if provenance.slip_error is not None:
+        data["provenance"]["slip_error"] = plain_numbers(provenance.slip_error)
     if contact.slips and provenance.normal_error:
         data["slips"] = [plain_numbers(slips) for slips in contact.slips]
     return data | {key: plain_numbers(length) for key, length in lengths.items() if length} | linked

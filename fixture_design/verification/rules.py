@@ -69,7 +69,7 @@ def _common_slip(
     unit = motion_scaled(motion, scale.reference, scale.length)
     unit = unit / np.linalg.norm(unit)
     for contact in contacts:
-        error = contact.provenance.normal_error
+        error = contact.provenance.off_slip
         lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
         limit = SLIP_ERRORS * error * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
         if error > COPLANAR_ANGLE or len(contact.slips) != len(contact.normals):
