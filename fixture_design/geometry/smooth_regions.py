@@ -79,8 +79,10 @@ def smooth_surfaces(
     """
     search = _Search.of(facets, vertices, triangles, noise)
     search.free -= {facet for _, members in given for facet in members}
+    for piece in turned:
+        search.keep_middles_on(piece, triangles)
     bands = [piece for piece in turned if piece.smooth and piece.profile_error]
-    search.free -= {facet for piece in turned if piece.profile_error or not piece.smooth for facet in piece.facets}
+    search.free -= {facet for piece in turned if not piece.is_plane or piece.profile_error for facet in piece.facets}
     if look:
         for piece in turned:
             if piece.smooth and not piece.profile_error and not piece.is_plane:
@@ -137,6 +139,8 @@ class _Search:
     areas: PerFacet
     widths: PerFacet
     smooth: list[dict[int, float]]
+    candidates: frozenset[int]
+    triangles_of: list[Indices]
     free: set[int]
     doubtful: set[int]
     tolerance: float
@@ -171,7 +175,9 @@ class _Search:
             areas,
             np.array([facet.width for facet in facets]),
             smooth,
-            candidates,
+            frozenset(candidates),
+            [facet.triangles for facet in facets],
+            set(candidates),
             {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate"},
             fit_tolerance(vertices, noise),
             noise,
@@ -200,20 +206,27 @@ class _Search:
         self.found.append((_one_way(best[0]), best[1]))
         self.free -= set(best[1])
 
+    def keep_middles_on(self, piece: TurnedPiece, triangles: Triangles) -> None:
+        """The middle of a plane ring is on the axis, where its surface is not: its largest triangle's counts."""
+        for facet in piece.facets:
+            reach = piece.shape.reaches(np.vstack([self.vertices[self.corners[facet]], self.middles[facet]]))
+            if reach[-1] < reach[:-1].min() / 2:
+                corners = self.vertices[triangles[self.triangles_of[facet]]]
+                areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+                self.middles[facet] = corners[np.argmax(areas)].mean(axis=0)
+
     def try_turned(self, piece: TurnedPiece) -> None:
         """Fit a surface that rings of vertices have shown, and grow it over facets that other features cut."""
         points = self._points(piece.facets)
         shape = refitted(piece.shape, points)
-        fewest = _FEWEST[piece.shape.kind]
-        if shape is None or len(piece.facets) < fewest[0] or len(points) < fewest[1]:
+        fewest, members = _FEWEST[piece.shape.kind], set(piece.facets)
+        enough = len(members) >= fewest[0] and len(points) >= fewest[1]
+        if shape is None or not enough or np.abs(shape.offsets(points)).max() > self.tolerance:
+            self.free |= members & self.candidates
             return
-        if np.abs(shape.offsets(points)).max() > self.tolerance:
-            return
-        members = set(piece.facets)
-        if any(other in self.free and other not in members for facet in members for other in self.smooth[facet]):
-            seed = max(members & self.free, key=lambda facet: (self.areas[facet], facet), default=None)
-            if seed is not None:
-                members |= set(self._grown(shape, seed))
+        if any(other in self.free for facet in members for other in self.smooth[facet]):
+            self.free |= members
+            members |= set(self._grown(shape, max(piece.facets, key=lambda facet: (self.areas[facet], facet))))
         self.found.append((_one_way(shape), sorted(members)))
         self.free -= members
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Float, Int
 
 from fixture_design.arrays import Indices
 from fixture_design.contacts.friction import tangents
@@ -30,6 +30,9 @@ _CELL, _DIRECTION_CELL = 5e-4, 4e-3
 _NEAR = 20.0
 #: No direction that a part has on purpose: which way an axis counts as positive.
 _GENERIC = np.array([0.5773, 0.2113, 0.7887])
+
+#: Points of one ring of many.
+_Group = Float[np.ndarray, "_ 3"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,14 +111,14 @@ def _axis(circles: list[_Circle], vertices: Vertices) -> Axis:
     return Axis(center, normal, len(np.unique(np.concatenate([circle.vertices for circle in circles]))))
 
 
-def _normal(groups: list[Directions]) -> Vector3:
+def _normal(groups: list[_Group]) -> Vector3:
     """The normal of the parallel planes that groups of points lie in."""
     spread = np.vstack([group - group.mean(axis=0) for group in groups])
     normal = np.linalg.eigh(spread.T @ spread)[1][:, 0] if len(spread) > 2 else _GENERIC
     return normal if normal @ _GENERIC > 0 else -normal
 
 
-def _center(groups: list[Directions], normal: Vector3) -> Vector3:
+def _center(groups: list[_Group], normal: Vector3) -> Vector3:
     """A point of the axis along a normal about which each group of points is on a circle: |x|^2 = 2 c . x + const."""
     frame = np.array(tangents(normal))
     middle = np.vstack(groups).mean(axis=0)
