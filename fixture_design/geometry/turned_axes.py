@@ -24,6 +24,8 @@ _FEWEST_TRIPLES = 3
 _MOST_EDGES = 12
 #: Angle by which a ring turns from edge to edge, at least and at most [rad], and how much longer than the next an edge may be [-].
 _LEAST_TURN, _MOST_TURN, _UNEVEN = 0.03, RING_ANGLE + 0.02, 4.0
+#: The middle one of three vertices is this many tolerances off the line of the others, or says nothing of a circle [-].
+_CLEAR = 10.0
 #: Triples are compared in cells of this size: of places relative to the part, of directions [-].
 _CELL, _DIRECTION_CELL = 5e-4, 4e-3
 #: Rings that are off an axis by this many tolerances are tried on it [-].
@@ -139,7 +141,8 @@ def _circles(vertices: Vertices, edges: EdgeEnds, tolerance: float, size: float)
     turn = np.arctan2(np.linalg.norm(square, axis=1), -np.einsum("ij,ij->i", u, v))
     with np.errstate(divide="ignore", invalid="ignore"):
         even = np.maximum(lengths[0] / lengths[1], lengths[1] / lengths[0]) <= _UNEVEN
-    kept = (turn >= _LEAST_TURN) & (turn <= _MOST_TURN) & even
+    bulge = np.linalg.norm(square, axis=1) / np.maximum(np.linalg.norm(u - v, axis=1), tolerance)
+    kept = (turn >= _LEAST_TURN) & (turn <= _MOST_TURN) & (bulge >= _CLEAR * tolerance) & even
     if not kept.any():
         return
     triples, b, u, v, square = triples[kept], b[kept], u[kept], v[kept], square[kept]
