@@ -138,9 +138,8 @@ class PartGeometry:
         noise = max(float(self.rounding.max()), self._facets.noise)
         tolerance, size = fit_tolerance(self.vertices, noise), part_size(self.vertices)
         taken = sorted(self._given_facets)
-        return tuple(
-            turned_pieces(self.vertices, self.triangles, self.facet_of_triangle, taken, noise, tolerance, size)
-        )
+        mesh = (self.vertices, self.triangles, self.facets, self.facet_of_triangle)
+        return tuple(turned_pieces(*mesh, taken, noise, tolerance, size))
 
     @cached_property
     def _turned_facets(self) -> frozenset[int]:

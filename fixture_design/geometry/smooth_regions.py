@@ -7,7 +7,7 @@ no coarser than the others: a flat cut into a shaft has its corners on the shaft
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -349,27 +349,37 @@ class _Search:
     def _grown(self, shape: RoundShape, seed: int) -> list[int]:
         """The free facets that lie on the surface and hang together with the seed.
 
-        Looked at are those within some steps of the seed, all at once; where that is not enough, four times as many.
+        Facets are judged once, many at a time: those some steps ahead of what has been reached, twice as far each time.
         """
-        deepest = _DEEPER * abs(float(shape.offsets(self.middles[seed][None])[0])) + self.tolerance
-        steps = 4
-        while True:
-            near, whole = self._within(seed, steps)
-            on = {facet for facet, lies in zip(near, self._lie_on(shape, near, deepest), strict=True) if lies}
-            members = self._linked(seed, on)
-            if whole or not any(o in self.free and o not in near for facet in members for o in self.smooth[facet]):
-                return sorted(members)
-            steps *= 4
+        middle = self.middles[seed][None]
+        deepest = _DEEPER * abs(float(shape.offsets(middle)[0])) + self.tolerance
+        sense = -1.0 if shape.directions(middle)[0] @ self.units[seed] < 0 else 1.0
+        on: dict[int, bool] = {}
+        members: set[int] = set()
+        waiting, steps = {seed}, 4
+        while waiting:
+            ahead = self._ahead(waiting, steps, on)
+            on |= zip(ahead, self._lie_on(shape, ahead, deepest, sense), strict=True)
+            reached, waiting = list(waiting), set()
+            while reached:
+                facet = reached.pop()
+                if facet not in on:
+                    waiting.add(facet)
+                elif on[facet] and facet not in members:
+                    members.add(facet)
+                    reached += [o for o in self.smooth[facet] if o in self.free and o not in members]
+            steps *= 2
+        return sorted(members)
 
-    def _within(self, seed: int, steps: int) -> tuple[dict[int, None], bool]:
-        """Free facets at most so many steps from the seed, and whether that is all there are."""
-        seen, edge = {seed: None}, [seed]
+    def _ahead(self, start: set[int], steps: int, judged: Mapping[int, bool]) -> list[int]:
+        """Free facets at most so many steps from some, without those that are judged."""
+        seen, edge = set(start), start
         for _ in range(steps):
-            edge = [o for o in {o for facet in edge for o in self.smooth[facet]} if o in self.free and o not in seen]
-            seen |= dict.fromkeys(edge)
+            edge = {o for facet in edge for o in self.smooth[facet] if o in self.free and o not in judged} - seen
             if not edge:
-                return seen, True
-        return seen, False
+                break
+            seen |= edge
+        return sorted(seen)
 
     def _linked(self, seed: int, allowed: set[int]) -> list[int]:
         """Those of some facets that hang together with the seed, if that is one of them."""
@@ -380,9 +390,8 @@ class _Search:
             waiting += new
         return list(members)
 
-    def _lie_on(self, shape: RoundShape, near: Iterable[int], deepest: float) -> list[bool]:
+    def _lie_on(self, shape: RoundShape, facets: list[int], deepest: float, sense: float) -> list[bool]:
         """Whether facets lie on a surface: all corners on it, or some on its chords, where another feature cut them."""
-        facets = list(near)
         counts = self.corner_counts[facets]
         starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
         owner = np.repeat(np.arange(len(facets)), counts)
@@ -392,7 +401,6 @@ class _Search:
         fits = (on == counts) | ((on >= _FEWEST_ON) & (np.maximum.reduceat(offsets, starts) <= deepest))
         fits &= np.abs(shape.offsets(self.middles[facets])) <= deepest
         out = shape.directions(corners)
-        sense = np.where(shape.directions(self.middles[facets][:1])[0] @ self.units[facets[0]] < 0, -1.0, 1.0)
         facing = sense * np.einsum("ij,ij->i", out, self.units[facets][owner])
         # at the apex of a cone there is no normal to compare with, and beside it noise
         facing = np.where(shape.reaches(corners) > _AT_APEX * self.tolerance, facing, 1.0)

@@ -17,12 +17,15 @@ from fixture_design.geometry.piece import area_vectors
 from fixture_design.geometry.planes import neighbours
 from fixture_design.geometry.shapes import EdgeEnds, OfTriangle, Triangles, Vertices
 from fixture_design.geometry.smooth_surface import RoundShape
-from fixture_design.geometry.turned_axes import axes_of
+from fixture_design.geometry.turned_axes import FEWEST_ON_RING, axes_of
 from fixture_design.geometry.turned_bands import Band, Rings, bands_of
 from fixture_design.geometry.turned_profile import Piece, pieces_of
+from fixture_design.tolerances import SMOOTH_ANGLE
 
 #: Roundings by which an axis may be off, that many of its vertices' [-].
 _AXIS_ERRORS = 4.0
+#: Corners on a ring of a facet that has an edge there.
+_AN_EDGE = 2
 #: A cone whose half angle is this near to a right one is a plane [rad].
 _PLANE = 1e-3
 
@@ -77,6 +80,7 @@ class _Free:
 def turned_pieces(
     vertices: Vertices,
     triangles: Triangles,
+    facets: Sequence[Facet],
     facet_of_triangle: OfTriangle,
     taken: list[int],
     noise: float,
@@ -86,7 +90,7 @@ def turned_pieces(
     """The pieces of all surfaces of revolution that have rings of vertices; each facet is of one at most.
 
     Args:
-        facet_of_triangle: facet numbers, shape (t,).  taken: facets that are of other surfaces.
+        facets: of the part.  facet_of_triangle: which of them each triangle is of, shape (t,).  taken: facets that are of other surfaces.
         noise: how well vertices are known [m].  tolerance: how far they may be off a ring [m].  size: of the part [m].
     """
     normals = area_vectors(vertices, triangles)
@@ -94,12 +98,61 @@ def turned_pieces(
     free = _Free(facet_of_triangle, counts, np.ones(len(counts), dtype=bool))
     free.facet[taken] = False
     edges = _borders(triangles, facet_of_triangle, len(vertices))
-    used = np.unique(edges)
+    at_border = np.zeros(len(vertices), dtype=bool)
+    at_border[edges] = True
+    at = _Incidence.of(triangles, len(vertices))
     for number, axis in enumerate(axes_of(vertices, edges, tolerance, size)):
+        near = at.triangles(axis.vertices)
+        near = near[free.facet[facet_of_triangle[near]]]
+        used = np.unique(triangles[near])
+        used = used[at_border[used]]
+        if len(used) < FEWEST_ON_RING:
+            continue
         rings = Rings.about(axis, vertices, used, tolerance)
-        bands = bands_of(rings, triangles, free.facet[facet_of_triangle], normals)
-        for piece in pieces_of(rings, bands, tolerance):
+        bands = bands_of(rings, triangles, near, normals)
+        beyond = _Beyond(rings, bands, triangles, facet_of_triangle, facets)
+        for piece in pieces_of(rings, bands, tolerance, beyond):
             yield from _of_piece(piece, bands, rings, free, vertices, noise, number)
+
+
+@dataclass(frozen=True, eq=False)
+class _Beyond:
+    """The facets beyond the ends of rows of bands."""
+
+    rings: Rings
+    bands: list[Band]
+    triangles: Triangles
+    of_triangle: OfTriangle
+    facets: Sequence[Facet]
+
+    def __call__(self, ring: int, band: int) -> tuple[float, float] | None:
+        """The angle and the width of a facet that meets a band smoothly at a ring."""
+        members = set(self.of_triangle[self.bands[band].triangles].tolist())
+        for member in sorted(members):
+            for other, angle in self.facets[member].angles.items():
+                if other not in members and abs(angle) < SMOOTH_ANGLE:
+                    corners = np.unique(self.triangles[self.facets[other].triangles])
+                    if (self.rings.of_vertex[corners] == ring).sum() >= _AN_EDGE:
+                        return angle, self.facets[other].width
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class _Incidence:
+    """The triangles at each vertex: those of vertex v are ``triangle[start[v]:start[v + 1]]``."""
+
+    triangle: Indices
+    start: Indices
+
+    @classmethod
+    def of(cls, triangles: Triangles, count: int) -> _Incidence:
+        order = np.argsort(triangles.ravel(), kind="stable")
+        return cls(order // 3, np.concatenate([[0], np.cumsum(np.bincount(triangles.ravel(), minlength=count))]))
+
+    def triangles(self, vertices: Indices) -> Indices:
+        """Those at some vertices."""
+        rows = [self.triangle[self.start[v] : self.start[v + 1]] for v in vertices.tolist()]
+        return np.unique(np.concatenate(rows))
 
 
 def coarse_errors(
@@ -127,18 +180,19 @@ def _of_piece(
         members = free.whole(np.concatenate([band.triangles for band in chosen])) if chosen else []
         if members and (kind != "coarse" or piece.curved or any(free.folded(band, rings) for band in chosen)):
             free.facet[members] = False
-            off = _axis_error(rings, vertices, noise)
+            reach = max(float(rings.reach[list(band.ends)].max()) for band in chosen)
+            off = _axis_error(rings, vertices, noise, reach)
             yield TurnedPiece(piece.shape, members, piece.error, off, kind == "smooth", number)
 
 
-def _axis_error(rings: Rings, vertices: Vertices, noise: float) -> float:
-    """How far normals may be off by the place and tilt of the axis, as far as the rings know these [rad]."""
+def _axis_error(rings: Rings, vertices: Vertices, noise: float, distance: float) -> float:
+    """How far normals at a distance from the axis may be off by its place and tilt, as the rings know these [rad]."""
     on = np.flatnonzero(rings.of_vertex >= 0)
     reach, height = rings.axis.places(vertices[on])
     number = rings.of_vertex[on]
     off = max(float(np.abs(reach - rings.reach[number]).max()), float(np.abs(height - rings.height[number]).max()), noise)
     extent = max(float(np.ptp(rings.height)), float(rings.reach.max()))
-    return _AXIS_ERRORS * off * (1 / extent + 1 / float(rings.reach[rings.reach > 0].min()))
+    return _AXIS_ERRORS * off * (1 / extent + 1 / distance)
 
 
 def _borders(triangles: Triangles, facet: OfTriangle, count: int) -> EdgeEnds:

@@ -42,12 +42,13 @@ class Axis:
     """A line about which rings of vertices lie.
 
     Attributes:
-        point: on it [m].  direction: unit.  vertices: how many lie on rings that were found about it.
+        point: on it [m].  direction: unit.
+        vertices: numbers of those on the rings that were found about it.
     """
 
     point: Vector3
     direction: Vector3
-    vertices: int
+    vertices: Indices
 
     def places(self, points: Directions) -> tuple[PerPoint, PerPoint]:
         """Distances from the axis and heights along it [m]."""
@@ -102,7 +103,7 @@ def axes_of(vertices: Vertices, edges: EdgeEnds, tolerance: float, size: float) 
         near[index] = True
         free &= ~near
         found.append(_axis([circles[other] for other in np.flatnonzero(near)], vertices))
-    yield from sorted(found, key=lambda axis: (-axis.vertices, np.round(axis.point / size, 6).tolist()))
+    yield from sorted(found, key=lambda axis: (-len(axis.vertices), np.round(axis.point / size, 6).tolist()))
 
 
 def _axis(circles: list[_Circle], vertices: Vertices) -> Axis:
@@ -110,7 +111,7 @@ def _axis(circles: list[_Circle], vertices: Vertices) -> Axis:
     groups = [vertices[circle.vertices] for circle in circles]
     normal = _normal(groups)
     center = _center(groups, normal)
-    return Axis(center, normal, len(np.unique(np.concatenate([circle.vertices for circle in circles]))))
+    return Axis(center, normal, np.unique(np.concatenate([circle.vertices for circle in circles])))
 
 
 def _normal(groups: list[_Group]) -> Vector3:

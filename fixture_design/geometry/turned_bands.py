@@ -79,17 +79,17 @@ class Band:
     kind: BandKind
 
 
-def bands_of(rings: Rings, triangles: Triangles, allowed: TriangleMask, normals: Float[np.ndarray, "t 3"]) -> list[Band]:
+def bands_of(rings: Rings, triangles: Triangles, near: Indices, normals: Float[np.ndarray, "t 3"]) -> list[Band]:
     """The bands between the rings about an axis.
 
     Args:
-        allowed: which triangles are not of another surface yet.  normals: of the triangles, of any length.
+        near: numbers of the triangles that may be of one.  normals: of the triangles, of any length.
     """
-    nodes = rings.of_vertex[triangles]
-    inside = np.flatnonzero(allowed & (nodes >= 0).all(axis=1))
+    nodes = rings.of_vertex[triangles[near]]
+    on = (nodes >= 0).all(axis=1)
+    inside, nodes = near[on], nodes[on]
     if not len(inside):
         return []
-    nodes = nodes[inside]
     # the corner that is alone on its ring, and the chord of the other two, in the triangle's own sense
     apex = np.full(len(inside), -1)
     for corner in range(3):

@@ -8,7 +8,7 @@ axis is known to be free, but in it they are off by up to the angles at which th
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,8 @@ _TANGENT = 0.2
 #: A cone that widens by less than this part of its height is a cylinder [-].
 _NO_SLOPE = 1e-6
 
+#: What is beyond the end of a row of bands.
+Beyond = Callable[[int, int], tuple[float, float] | None]
 #: Places in the half plane: distance from the axis, height.
 _Places = Float[np.ndarray, "n 2"]
 
@@ -58,27 +60,36 @@ class _Line:
 
 @dataclass(frozen=True, eq=False)
 class _Measure:
-    """The length of a line [m], and the angle to each neighbour [rad]."""
+    """The length of a line [m]; to each neighbour the angle [rad], and its length or width [m].
+
+    Facets beyond the ends of a row have negative numbers.
+    """
 
     length: float
-    angles: Mapping[int, float]
+    beside: Mapping[int, tuple[float, float]]
 
 
-def pieces_of(rings: Rings, bands: list[Band], tolerance: float) -> list[Piece]:
-    """The surfaces that the bands about an axis stand for."""
+def pieces_of(rings: Rings, bands: list[Band], tolerance: float, beyond: Beyond) -> list[Piece]:
+    """The surfaces that the bands about an axis stand for.
+
+    Args:
+        tolerance: how far a ring may be off a line or circle [m].
+        beyond: of a ring at the end of a row of bands and the last of these, the angle [rad] at which a facet beyond it
+            meets the band smoothly, and its width [m]; None if there is no such facet.
+    """
     places = np.column_stack([rings.reach, rings.height])
     found = []
     for lines, closed in _chains(bands, places, tolerance):
         count = len(lines)
-        measures = [_measure(lines, index, closed, places, set()) for index in range(count)]
-        arcs = _arcs(lines, [index in _errors(measures) for index in range(count)], closed, places, tolerance)
+        curved = _errors(_measures(lines, closed, places, set(), beyond))
+        arcs = _arcs(lines, [index in curved for index in range(count)], closed, places, tolerance)
         tangent: set[tuple[int, int]] = set()
         for members, center, _ in arcs:
             shape = _arc_shape(rings, center, places[lines[members[0]].rings[0]])
             found.append(Piece([band for member in members for band in lines[member].bands], shape, 0.0, True))
             tangent |= _tangents(lines, members, center, closed, places)
         taken = {member for members, _, _ in arcs for member in members}
-        errors = _errors([_measure(lines, index, closed, places, tangent) for index in range(count)])
+        errors = _errors(_measures(lines, closed, places, tangent, beyond))
         for index, line in enumerate(lines):
             if index not in taken:
                 shape = _line_shape(rings, places[line.rings[0]], places[line.rings[-1]])
@@ -92,16 +103,17 @@ def _errors(measures: Sequence[_Measure]) -> dict[int, float]:
     As with facets (`smoothness`), these meet two others smoothly and are not much longer than one of them; and so does
     one of these two, since a chamfer alone has smooth neighbours too.
     """
-    smooth = [[o for o, angle in line.angles.items() if abs(angle) < SMOOTH_ANGLE] for line in measures]
+    smooth = [{o for o, (angle, _) in line.beside.items() if abs(angle) < SMOOTH_ANGLE} for line in measures]
     narrow = [
-        bool(smooth[i]) and line.length <= STRIP_WIDTH_RATIO * max(measures[o].length for o in smooth[i])
+        bool(smooth[i]) and line.length <= STRIP_WIDTH_RATIO * max(line.beside[o][1] for o in smooth[i])
         for i, line in enumerate(measures)
     ]
     inner = {i for i in range(len(measures)) if len(smooth[i]) == 2 and narrow[i]}
-    chords = {i for i in inner if inner.intersection(smooth[i])}
-    ends = {i for i in range(len(measures)) if len(smooth[i]) == 1 and narrow[i] and chords.intersection(smooth[i])}
-    found = {i: max(abs(measures[i].angles[o]) for o in smooth[i]) for i in chords | ends}
-    coarse = ring_errors([line.angles for line in measures], [line.length for line in measures])
+    chords = {i for i in inner if inner & smooth[i]}
+    ends = {i for i in range(len(measures)) if len(smooth[i]) == 1 and narrow[i] and chords & smooth[i]}
+    found = {i: max(abs(measures[i].beside[o][0]) for o in smooth[i]) for i in chords | ends}
+    angles = [{o: angle for o, (angle, _) in line.beside.items() if o >= 0} for line in measures]
+    coarse = ring_errors(angles, [line.length for line in measures])
     return found | {i: max(error, found.get(i, 0.0)) for i, error in coarse.items()}
 
 
@@ -167,18 +179,24 @@ def _turn(one: _Line, other: _Line, places: _Places) -> float:
     return float(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy))
 
 
-def _measure(
-    lines: list[_Line], index: int, closed: bool, places: _Places, tangent: set[tuple[int, int]]
-) -> _Measure:
-    """A line among its neighbours, but for those that it is tangent to."""
+def _measures(
+    lines: list[_Line], closed: bool, places: _Places, tangent: set[tuple[int, int]], beyond: Beyond
+) -> list[_Measure]:
+    """Lines among their neighbours, but for those that they are tangent to."""
     count = len(lines)
-    angles = {}
-    for step in (-1, 1):
-        other = (index + step) % count if closed else index + step
-        if 0 <= other < count and other != index and (index, other) not in tangent:
-            pair = (lines[other], lines[index]) if step < 0 else (lines[index], lines[other])
-            angles[other] = _turn(*pair, places)
-    return _Measure(_length(lines[index], places), angles)
+    found = []
+    for index, line in enumerate(lines):
+        beside = {}
+        for step, ring, band in ((-1, line.rings[0], line.bands[0]), (1, line.rings[-1], line.bands[-1])):
+            other = (index + step) % count if closed else index + step
+            if 0 <= other < count:
+                if other != index and (index, other) not in tangent:
+                    pair = (lines[other], line) if step < 0 else (line, lines[other])
+                    beside[other] = (_turn(*pair, places), _length(lines[other], places))
+            elif (facet := beyond(ring, band)) is not None:
+                beside[-1 if step < 0 else -2] = facet
+        found.append(_Measure(_length(line, places), beside))
+    return found
 
 
 def _arcs(
