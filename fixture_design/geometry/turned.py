@@ -102,8 +102,11 @@ def turned_pieces(
     at_border[edges] = True
     at = _Incidence.of(triangles, len(vertices))
     for number, axis in enumerate(axes_of(vertices, edges, tolerance, size)):
-        near = at.triangles(axis.vertices)
-        near = near[free.facet[facet_of_triangle[near]]]
+        touched = np.unique(facet_of_triangle[at.triangles(axis.vertices)])
+        touched = touched[free.facet[touched]]
+        if not len(touched):
+            continue
+        near = np.sort(np.concatenate([facets[facet].triangles for facet in touched.tolist()]))
         used = np.unique(triangles[near])
         used = used[at_border[used]]
         if len(used) < FEWEST_ON_RING:
@@ -125,15 +128,15 @@ class _Beyond:
     of_triangle: OfTriangle
     facets: Sequence[Facet]
 
-    def __call__(self, ring: int, band: int) -> tuple[float, float] | None:
-        """The angle and the width of a facet that meets a band smoothly at a ring."""
+    def __call__(self, ring: int, band: int) -> tuple[float, float, bool] | None:
+        """Angle and width of a facet that meets a band smoothly at a ring, and whether it is a strip."""
         members = set(self.of_triangle[self.bands[band].triangles].tolist())
         for member in sorted(members):
             for other, angle in self.facets[member].angles.items():
                 if other not in members and abs(angle) < SMOOTH_ANGLE:
                     corners = np.unique(self.triangles[self.facets[other].triangles])
                     if (self.rings.of_vertex[corners] == ring).sum() >= _AN_EDGE:
-                        return angle, self.facets[other].width
+                        return angle, self.facets[other].width, self.facets[other].provenance.kind == "approximate"
         return None
 
 

@@ -28,7 +28,7 @@ _TANGENT = 0.2
 _NO_SLOPE = 1e-6
 
 #: What is beyond the end of a row of bands.
-Beyond = Callable[[int, int], tuple[float, float] | None]
+Beyond = Callable[[int, int], tuple[float, float, bool] | None]
 #: Places in the half plane: distance from the axis, height.
 _Places = Float[np.ndarray, "n 2"]
 
@@ -62,11 +62,12 @@ class _Line:
 class _Measure:
     """The length of a line [m]; to each neighbour the angle [rad], and its length or width [m].
 
-    Facets beyond the ends of a row have negative numbers.
+    Facets beyond the ends of a row have negative numbers; ``beside_strip``: one of these is a strip of a curved surface.
     """
 
     length: float
     beside: Mapping[int, tuple[float, float]]
+    beside_strip: bool
 
 
 def pieces_of(rings: Rings, bands: list[Band], tolerance: float, beyond: Beyond) -> list[Piece]:
@@ -75,7 +76,7 @@ def pieces_of(rings: Rings, bands: list[Band], tolerance: float, beyond: Beyond)
     Args:
         tolerance: how far a ring may be off a line or circle [m].
         beyond: of a ring at the end of a row of bands and the last of these, the angle [rad] at which a facet beyond it
-            meets the band smoothly, and its width [m]; None if there is no such facet.
+            meets the band smoothly, its width [m], and whether it is a strip; None if there is no such facet.
     """
     places = np.column_stack([rings.reach, rings.height])
     found = []
@@ -109,7 +110,7 @@ def _errors(measures: Sequence[_Measure]) -> dict[int, float]:
         for i, line in enumerate(measures)
     ]
     inner = {i for i in range(len(measures)) if len(smooth[i]) == 2 and narrow[i]}
-    chords = {i for i in inner if inner & smooth[i]}
+    chords = {i for i in inner if inner & smooth[i] or measures[i].beside_strip}
     ends = {i for i in range(len(measures)) if len(smooth[i]) == 1 and narrow[i] and chords & smooth[i]}
     found = {i: max(abs(measures[i].beside[o][0]) for o in smooth[i]) for i in chords | ends}
     angles = [{o: angle for o, (angle, _) in line.beside.items() if o >= 0} for line in measures]
@@ -186,7 +187,7 @@ def _measures(
     count = len(lines)
     found = []
     for index, line in enumerate(lines):
-        beside = {}
+        beside, strip = {}, False
         for step, ring, band in ((-1, line.rings[0], line.bands[0]), (1, line.rings[-1], line.bands[-1])):
             other = (index + step) % count if closed else index + step
             if 0 <= other < count:
@@ -194,8 +195,9 @@ def _measures(
                     pair = (lines[other], line) if step < 0 else (line, lines[other])
                     beside[other] = (_turn(*pair, places), _length(lines[other], places))
             elif (facet := beyond(ring, band)) is not None:
-                beside[-1 if step < 0 else -2] = facet
-        found.append(_Measure(_length(line, places), beside))
+                beside[-1 if step < 0 else -2] = facet[:2]
+                strip |= facet[2]
+        found.append(_Measure(_length(line, places), beside, strip))
     return found
 
 
