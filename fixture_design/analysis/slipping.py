@@ -71,7 +71,7 @@ def _slips_of(contacts: Sequence[Contact], scale: Scale, tolerances: Tolerances)
     """The motions that every one of some surfaces has among its own, unit rows, shape (k, 6); k may be 0."""
     none = np.zeros((0, 6))
     known = all(len(contact.slips) == len(contact.normals) for contact in contacts)
-    if not known or max(contact.provenance.normal_error for contact in contacts) > COPLANAR_ANGLE:
+    if not known or max(contact.provenance.off_slip for contact in contacts) > COPLANAR_ANGLE:
         return none
     zero = tolerances.at_offset(scale.offset).zero
     projectors, allowed = [], []
@@ -95,6 +95,6 @@ def off_slips(slips: Rows, scale: Scale) -> Rows:
 
 
 def slip_error(contact: Contact, scale: Scale) -> float:
-    """How far a contact's normal error may move its surface's own motions, at most [-]."""
+    """How far the error of a contact's surface may move its surface's own motions, at most [-]."""
     lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
-    return SLIP_ERRORS * contact.provenance.normal_error * float(np.hypot(1.0, lever))
+    return SLIP_ERRORS * contact.provenance.off_slip * float(np.hypot(1.0, lever))

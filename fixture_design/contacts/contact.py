@@ -39,16 +39,26 @@ class Provenance:
         kind: "exact" (decimals of a file, vertices of a facet), "fitted" (a smooth surface fitted to facets) or
             "approximate" (a facet that stands for a piece of a curved surface).
         normal_error: largest angle between the normal given and the true one [rad].
+        slip_error: how far off the motions are that move the surface along itself [rad]; None: as far as the normal. On
+            a turned surface whose profile is not known normals are off, but only in the plane through its axis.
     """
 
     kind: Literal["exact", "fitted", "approximate"] = "exact"
     normal_error: float = 0.0
+    slip_error: float | None = None
+
+    @property
+    def off_slip(self) -> float:
+        """How far off the motions are that move the surface along itself [rad]."""
+        return self.normal_error if self.slip_error is None else self.slip_error
 
     @staticmethod
     def worst(origins: Sequence[Provenance]) -> Provenance:
         """The least certain kind of some origins, at least one, with their largest error."""
         doubtful = max(origins, key=lambda origin: ("exact", "fitted", "approximate").index(origin.kind))
-        return Provenance(doubtful.kind, max(origin.normal_error for origin in origins))
+        slips = [origin.slip_error for origin in origins]
+        known = None if all(slip is None for slip in slips) else max(origin.off_slip for origin in origins)
+        return Provenance(doubtful.kind, max(origin.normal_error for origin in origins), known)
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,7 @@ _TANGENT = 0.2
 def judged_again(
     facets: Sequence[Facet],
     surface_of: Mapping[int, SmoothSurface],
+    doubts: Mapping[int, float],
     vertices: Vertices,
     triangles: Triangles,
 ) -> dict[int, Provenance]:
@@ -31,6 +32,7 @@ def judged_again(
 
     Args:
         surface_of: the round surface of each facet that is on one.
+        doubts: how far off facets are if they stand for a round surface that they are too coarse to tell [rad].
     """
     rest = {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate" and i not in surface_of}
     corners = {i: np.unique(triangles[facets[i].triangles]) for i in rest | set(surface_of)}
@@ -59,7 +61,13 @@ def judged_again(
         for index, facet in enumerate(facets)
     ]
     again = provenances(measures)
-    of_surfaces = {
-        i: Provenance("fitted" if s.normal_error else "exact", s.normal_error) for i, s in surface_of.items()
-    }
-    return {index: again[index] for index in rest} | of_surfaces
+    found = {index: again[index] for index in rest}
+    for index, error in doubts.items():
+        found[index] = Provenance("approximate", max(error, again[index].normal_error) + facets[index].noise)
+    return found | {index: _of_surface(surface) for index, surface in surface_of.items()}
+
+
+def _of_surface(surface: SmoothSurface) -> Provenance:
+    if surface.is_band:
+        return Provenance("approximate", surface.normal_error, surface.axis_error)
+    return Provenance("fitted" if surface.normal_error else "exact", surface.normal_error)

@@ -15,6 +15,7 @@ from fixture_design.errors import GeometryError, UnsupportedError
 from fixture_design.geometry.nearest import clearance, touched_triangles
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.sets import place_text, sets_by_edges, sets_by_looking, units_of
+from fixture_design.geometry.smooth_surface import SmoothSurface
 from fixture_design.tolerances import SLIVER_NOISE, SMOOTH_ANGLE
 
 #: Facets must be this many times larger than the blur around a corner, so that looking into it sees the corner [-].
@@ -147,7 +148,7 @@ def _patches(geometry: PartGeometry, facets: Indices) -> list[list[int]]:
     for first, second in combinations(facets.tolist(), 2):
         angle = geometry.facets[first].angles.get(second)
         if surfaces[first] is not None or surfaces[second] is not None:
-            together = surfaces[first] is surfaces[second]
+            together = _as_one(surfaces[first], surfaces[second])
         else:
             together = (
                 angle is not None and abs(angle) < SMOOTH_ANGLE and "approximate" in (kinds[first], kinds[second])
@@ -160,10 +161,20 @@ def _patches(geometry: PartGeometry, facets: Indices) -> list[list[int]]:
     return [sorted(patch) for patch in patches]
 
 
+def _as_one(one: SmoothSurface | None, other: SmoothSurface | None) -> bool:
+    """Whether it is one surface, or two bands of one."""
+    if one is None or other is None or one is other:
+        return one is other
+    return one.is_band and other.is_band and one.name == other.name
+
+
 def _patch(geometry: PartGeometry, facets: list[int], p_PC: Point, name: str) -> _Patch:
     """Of a round surface its normal; of one facet its own; of strips the normalised mean, off by up to their spread."""
     surface = geometry.surface_of_facet(facets[0])
     if surface is not None:
+        others = {id(s): s for s in map(geometry.surface_of_facet, facets) if s is not None}
+        if len(others) > 1:
+            return _between_bands(geometry, facets, list(others.values()), p_PC)
         return _Patch(facets, surface.normal(p_PC), geometry.provenance_of(facets[0]), surface.slips())
     origins = [geometry.provenance_of(facet) for facet in facets]
     if len(facets) == 1:
@@ -180,6 +191,15 @@ def _patch(geometry: PartGeometry, facets: list[int], p_PC: Point, name: str) ->
     kind = "approximate" if any(origin.kind == "approximate" for origin in origins) else "exact"
     error = max(spread, *(origin.normal_error for origin in origins))
     return _Patch(facets, mean, Provenance(kind, error), np.zeros((0, 6)))
+
+
+def _between_bands(geometry: PartGeometry, facets: list[int], bands: list[SmoothSurface], p_PC: Point) -> _Patch:
+    """Where bands of one turned surface meet: the mean of their normals, off by up to their spread and their errors."""
+    normals = np.array([band.normal(p_PC) for band in bands])
+    mean = normals.sum(axis=0) / np.linalg.norm(normals.sum(axis=0))
+    spread = float(np.arctan2(np.linalg.norm(np.cross(normals, mean), axis=1), normals @ mean).max())
+    worst = Provenance.worst([geometry.provenance_of(facet) for facet in facets])
+    return _Patch(facets, mean, Provenance(worst.kind, worst.normal_error + spread, worst.slip_error), bands[0].slips())
 
 
 def plane_slips(normal: Point, p_PC: Point) -> Rows:

@@ -26,8 +26,9 @@ from fixture_design.geometry.shapes import (
     Vector3,
     Vertices,
 )
-from fixture_design.geometry.smooth_regions import Region, may_be_round, smooth_surfaces
+from fixture_design.geometry.smooth_regions import Region, fit_tolerance, may_be_round, part_size, smooth_surfaces
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
+from fixture_design.geometry.turned import TurnedPiece, coarse_errors, turned_pieces
 from fixture_design.geometry.winding import shells, winding_numbers
 from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
 
@@ -121,8 +122,29 @@ class PartGeometry:
         """The round surfaces that facets stand for, in the order of their names; of a faceted part those given."""
         noise = max(float(self.rounding.max()), self._facets.noise)
         return smooth_surfaces(
-            self.facets, self.vertices, self.triangles, noise, self._given_regions, look=not self.faceted
+            self.facets,
+            self.vertices,
+            self.triangles,
+            noise,
+            self._given_regions,
+            self._turned,
+            look=not self.faceted,
         )
+
+    @cached_property
+    def _turned(self) -> tuple[TurnedPiece, ...]:
+        """The pieces of surfaces of revolution that have rings of vertices; of a faceted part none."""
+        if self.faceted:
+            return ()
+        noise = max(float(self.rounding.max()), self._facets.noise)
+        tolerance, size = fit_tolerance(self.vertices, noise), part_size(self.vertices)
+        taken = sorted({int(facet) for _, members in self._given_regions for facet in members})
+        mesh = (self.vertices, self.triangles, self.facets, self.facet_of_triangle)
+        return tuple(turned_pieces(*mesh, taken, noise, tolerance, size))
+
+    @cached_property
+    def _turned_facets(self) -> frozenset[int]:
+        return frozenset(facet for piece in self._turned for facet in piece.facets)
 
     @cached_property
     def _given_regions(self) -> list[Region]:
@@ -139,7 +161,9 @@ class PartGeometry:
     def _maybe_round(self) -> frozenset[int]:
         """The facets that may stand for a round surface."""
         given = (facet for _, members in self._given_regions for facet in members)
-        return frozenset([*given, *(index for index, facet in enumerate(self.facets) if may_be_round(facet))])
+        return frozenset(
+            [*given, *self._turned_facets, *(index for index, facet in enumerate(self.facets) if may_be_round(facet))]
+        )
 
     @cached_property
     def _surface_of_facet(self) -> dict[int, SmoothSurface]:
@@ -147,7 +171,8 @@ class PartGeometry:
 
     @cached_property
     def _judged_again(self) -> dict[int, Provenance]:
-        return judged_again(self.facets, self._surface_of_facet, self.vertices, self.triangles)
+        doubts = coarse_errors(self._turned, self.facets, self.vertices, self.triangles)
+        return judged_again(self.facets, self._surface_of_facet, doubts, self.vertices, self.triangles)
 
     def surface_of_facet(self, facet: int) -> SmoothSurface | None:
         """The round surface that a facet stands for, if it is known."""

@@ -57,6 +57,18 @@ def fitted(kind: RoundKind, patch: Patch) -> RoundShape | None:
     return RoundShape(kind, shape.point * size + center, shape.axis, radius, shape.ring * size)
 
 
+def refitted(shape: RoundShape, points: Directions) -> RoundShape | None:
+    """The surface nearest to points, from one that is near; None if it leaves what makes sense."""
+    center, size = points.mean(axis=0), float(np.linalg.norm(np.ptp(points, axis=0)))
+    radius = shape.radius if shape.kind == "cone" else shape.radius / size
+    unit = RoundShape(shape.kind, (shape.point - center) / size, shape.axis, radius, shape.ring / size)
+    found = refined(unit, (points - center) / size) if _sensible(unit) else None
+    if found is None:
+        return None
+    radius = found.radius if found.kind == "cone" else found.radius * size
+    return RoundShape(found.kind, found.point * size + center, found.axis, radius, found.ring * size)
+
+
 def refined(shape: RoundShape, points: Directions) -> RoundShape | None:
     """Gauss-Newton on the distances of the points, which have size one; None if it leaves what makes sense.
 

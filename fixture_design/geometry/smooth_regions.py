@@ -7,7 +7,7 @@ no coarser than the others: a flat cut into a shaft has its corners on the shaft
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -16,9 +16,10 @@ import numpy as np
 
 from fixture_design.arrays import Indices
 from fixture_design.geometry.facets import Facet
-from fixture_design.geometry.round_fits import Patch, fitted, normal_error
+from fixture_design.geometry.round_fits import Patch, fitted, normal_error, refitted
 from fixture_design.geometry.shapes import Directions, FacetVectors, OfFacet, PerFacet, Triangles, Vertices
 from fixture_design.geometry.smooth_surface import RoundKind, RoundShape, SmoothSurface
+from fixture_design.geometry.turned import TurnedPiece
 from fixture_design.tolerances import ON_EDGE_ROUNDINGS, ROUND_FIT, SMOOTH_ANGLE
 
 #: Facets and vertices that a surface must have, so that it is no accident that they fit: three bevels between two flats
@@ -48,12 +49,23 @@ _VAGUE = 1e-2
 Region = tuple[RoundShape, list[int]]
 
 
+def fit_tolerance(vertices: Vertices, noise: float) -> float:
+    """How far vertices that are known to within ``noise`` may be off a round surface that they lie on [m]."""
+    return ON_EDGE_ROUNDINGS * noise + ROUND_FIT * part_size(vertices)
+
+
+def part_size(vertices: Vertices) -> float:
+    """The diagonal of the bounding box [m]."""
+    return float(np.linalg.norm(np.ptp(vertices, axis=0)))
+
+
 def smooth_surfaces(
     facets: Sequence[Facet],
     vertices: Vertices,
     triangles: Triangles,
     noise: float,
     given: Sequence[Region] = (),
+    turned: Sequence[TurnedPiece] = (),
     look: bool = True,
 ) -> tuple[SmoothSurface, ...]:
     """The round surfaces of a part, named by kind in the order of their places.
@@ -62,11 +74,19 @@ def smooth_surfaces(
         facets: those whose provenance is approximate may stand for one.
         noise: how well vertices are known [m].
         given: surfaces that are known exactly.
+        turned: pieces of surfaces of revolution.
         look: whether to look for others.
     """
     search = _Search.of(facets, vertices, triangles, noise)
     search.free -= {facet for _, members in given for facet in members}
+    for piece in turned:
+        search.keep_middles_on(piece, triangles)
+    bands = [piece for piece in turned if piece.smooth and piece.profile_error]
+    search.free -= {facet for piece in turned if not piece.is_plane or piece.profile_error for facet in piece.facets}
     if look:
+        for piece in turned:
+            if piece.smooth and not piece.profile_error and not piece.is_plane:
+                search.try_turned(piece)
         for seed in search.seeds():
             search.try_seed(seed)
         search.merge()
@@ -79,6 +99,8 @@ def smooth_surfaces(
     for surface in found:
         counts[surface.kind] += 1
         named.append(replace(surface, name=f"{surface.kind} {counts[surface.kind]}"))
+    turns = sorted({piece.number for piece in bands})
+    named += [replace(search.band(piece), name=f"turned {turns.index(piece.number) + 1}") for piece in bands]
     return tuple(named)
 
 
@@ -117,6 +139,8 @@ class _Search:
     areas: PerFacet
     widths: PerFacet
     smooth: list[dict[int, float]]
+    candidates: frozenset[int]
+    triangles_of: list[Indices]
     free: set[int]
     doubtful: set[int]
     tolerance: float
@@ -141,7 +165,7 @@ class _Search:
         areas = np.linalg.norm(normals, axis=1)
         smooth = [{o: angle for o, angle in facet.angles.items() if abs(angle) < SMOOTH_ANGLE} for facet in facets]
         corners = [np.unique(triangles[facet.triangles]) for facet in facets]
-        size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+        size = part_size(vertices)
         return cls(
             vertices,
             corners,
@@ -151,9 +175,11 @@ class _Search:
             areas,
             np.array([facet.width for facet in facets]),
             smooth,
-            candidates,
+            frozenset(candidates),
+            [facet.triangles for facet in facets],
+            set(candidates),
             {i for i, facet in enumerate(facets) if facet.provenance.kind == "approximate"},
-            ON_EDGE_ROUNDINGS * noise + ROUND_FIT * size,
+            fit_tolerance(vertices, noise),
             noise,
             size,
         )
@@ -179,6 +205,45 @@ class _Search:
             return
         self.found.append((_one_way(best[0]), best[1]))
         self.free -= set(best[1])
+
+    def keep_middles_on(self, piece: TurnedPiece, triangles: Triangles) -> None:
+        """The middle of a plane ring is on the axis, where its surface is not: its largest triangle's counts."""
+        for facet in piece.facets:
+            reach = piece.shape.reaches(np.vstack([self.vertices[self.corners[facet]], self.middles[facet]]))
+            if reach[-1] < reach[:-1].min() / 2:
+                corners = self.vertices[triangles[self.triangles_of[facet]]]
+                areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+                self.middles[facet] = corners[np.argmax(areas)].mean(axis=0)
+
+    def try_turned(self, piece: TurnedPiece) -> None:
+        """Fit a surface that rings of vertices have shown, and grow it over facets that other features cut."""
+        points = self._points(piece.facets)
+        shape = refitted(piece.shape, points)
+        fewest, members = _FEWEST[piece.shape.kind], set(piece.facets)
+        enough = len(members) >= fewest[0] and len(points) >= fewest[1]
+        if shape is None or not enough or np.abs(shape.offsets(points)).max() > self.tolerance:
+            self.free |= members & self.candidates
+            return
+        if any(other in self.free for facet in members for other in self.smooth[facet]):
+            self.free |= members
+            members |= set(self._grown(shape, max(piece.facets, key=lambda facet: (self.areas[facet], facet))))
+        self.found.append((_one_way(shape), sorted(members)))
+        self.free -= members
+
+    def band(self, piece: TurnedPiece) -> SmoothSurface:
+        """The surface through two rings of a profile that is not known, without a name yet."""
+        members = piece.facets
+        points, middles = self._points(members), self.middles[members]
+        return SmoothSurface(
+            "",
+            piece.shape,
+            self._hollow(piece.shape, members),
+            np.array(members, dtype=np.int64),
+            float(np.abs(piece.shape.offsets(points)).max()),
+            piece.profile_error + piece.axis_error,
+            float(np.abs(piece.shape.offsets(middles)).max()),
+            piece.axis_error,
+        )
 
     def merge(self) -> None:
         """Make one of surfaces that are one: a slot cuts a bore in two, and the halves have no facet in common."""
@@ -223,7 +288,7 @@ class _Search:
         off = 0.0 if known else normal_error(shape, points, middles, error, self.noise, width)
         sagitta = float(np.abs(shape.offsets(middles)).max())
         return SmoothSurface(
-            shape.kind, shape, self._hollow(shape, members), np.array(members, dtype=np.int64), error, off, sagitta
+            shape.kind, shape, self._hollow(shape, members), np.array(members, dtype=np.int64), error, off, sagitta, off
         )
 
     def _patches(self, seed: int) -> Iterator[tuple[list[int], tuple[RoundKind, ...]]]:
@@ -284,27 +349,37 @@ class _Search:
     def _grown(self, shape: RoundShape, seed: int) -> list[int]:
         """The free facets that lie on the surface and hang together with the seed.
 
-        Looked at are those within some steps of the seed, all at once; where that is not enough, four times as many.
+        Facets are judged once, many at a time: those some steps ahead of what has been reached, twice as far each time.
         """
-        deepest = _DEEPER * abs(float(shape.offsets(self.middles[seed][None])[0])) + self.tolerance
-        steps = 4
-        while True:
-            near, whole = self._within(seed, steps)
-            on = {facet for facet, lies in zip(near, self._lie_on(shape, near, deepest), strict=True) if lies}
-            members = self._linked(seed, on)
-            if whole or not any(o in self.free and o not in near for facet in members for o in self.smooth[facet]):
-                return sorted(members)
-            steps *= 4
+        middle = self.middles[seed][None]
+        deepest = _DEEPER * abs(float(shape.offsets(middle)[0])) + self.tolerance
+        sense = -1.0 if shape.directions(middle)[0] @ self.units[seed] < 0 else 1.0
+        on: dict[int, bool] = {}
+        members: set[int] = set()
+        waiting, steps = {seed}, 4
+        while waiting:
+            ahead = self._ahead(waiting, steps, on)
+            on |= zip(ahead, self._lie_on(shape, ahead, deepest, sense), strict=True)
+            reached, waiting = list(waiting), set()
+            while reached:
+                facet = reached.pop()
+                if facet not in on:
+                    waiting.add(facet)
+                elif on[facet] and facet not in members:
+                    members.add(facet)
+                    reached += [o for o in self.smooth[facet] if o in self.free and o not in members]
+            steps *= 2
+        return sorted(members)
 
-    def _within(self, seed: int, steps: int) -> tuple[dict[int, None], bool]:
-        """Free facets at most so many steps from the seed, and whether that is all there are."""
-        seen, edge = {seed: None}, [seed]
+    def _ahead(self, start: set[int], steps: int, judged: Mapping[int, bool]) -> list[int]:
+        """Free facets at most so many steps from some, without those that are judged."""
+        seen, edge = set(start), start
         for _ in range(steps):
-            edge = [o for o in {o for facet in edge for o in self.smooth[facet]} if o in self.free and o not in seen]
-            seen |= dict.fromkeys(edge)
+            edge = {o for facet in edge for o in self.smooth[facet] if o in self.free and o not in judged} - seen
             if not edge:
-                return seen, True
-        return seen, False
+                break
+            seen |= edge
+        return sorted(seen)
 
     def _linked(self, seed: int, allowed: set[int]) -> list[int]:
         """Those of some facets that hang together with the seed, if that is one of them."""
@@ -315,9 +390,8 @@ class _Search:
             waiting += new
         return list(members)
 
-    def _lie_on(self, shape: RoundShape, near: Iterable[int], deepest: float) -> list[bool]:
+    def _lie_on(self, shape: RoundShape, facets: list[int], deepest: float, sense: float) -> list[bool]:
         """Whether facets lie on a surface: all corners on it, or some on its chords, where another feature cut them."""
-        facets = list(near)
         counts = self.corner_counts[facets]
         starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
         owner = np.repeat(np.arange(len(facets)), counts)
@@ -327,7 +401,6 @@ class _Search:
         fits = (on == counts) | ((on >= _FEWEST_ON) & (np.maximum.reduceat(offsets, starts) <= deepest))
         fits &= np.abs(shape.offsets(self.middles[facets])) <= deepest
         out = shape.directions(corners)
-        sense = np.where(shape.directions(self.middles[facets][:1])[0] @ self.units[facets[0]] < 0, -1.0, 1.0)
         facing = sense * np.einsum("ij,ij->i", out, self.units[facets][owner])
         # at the apex of a cone there is no normal to compare with, and beside it noise
         facing = np.where(shape.reaches(corners) > _AT_APEX * self.tolerance, facing, 1.0)

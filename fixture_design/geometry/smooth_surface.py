@@ -95,6 +95,9 @@ class SmoothSurface:
         error: largest distance of a vertex of these facets from it [m].
         normal_error: how far off its normals may be where it was fitted [rad]; 0 if it was given.
         sagitta: largest distance of the facets' middles from it [m].
+        axis_error: how far off the motions may be that move it along itself [rad]. As ``normal_error``, but for a band
+            of a turned surface whose profile is not known: there normals are in the plane of axis and point, wherever
+            in it.
     """
 
     name: str
@@ -104,6 +107,12 @@ class SmoothSurface:
     error: float
     normal_error: float
     sagitta: float
+    axis_error: float = 0.0
+
+    @property
+    def is_band(self) -> bool:
+        """Whether it is a band of a turned surface whose profile is not known; bands of one have the same name."""
+        return self.axis_error < self.normal_error
 
     @property
     def kind(self) -> RoundKind:

@@ -100,6 +100,7 @@ def _cone(cone: PolyhedralConvexCone) -> Data:
 
 def _contact(contact: Contact) -> Data:
     provenance = contact.provenance
+    source: Data = {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)}
     data: Data = {
         "name": contact.name,
         "role": contact.role,
@@ -108,11 +109,13 @@ def _contact(contact: Contact) -> Data:
         "distance": plain_numbers(contact.distance),
         "feature": contact.feature,
         "friction": plain_numbers(contact.friction),
-        "provenance": {"kind": provenance.kind, "normal_error": plain_numbers(provenance.normal_error)},
+        "provenance": source,
     }
     # keys of soft tips, pins and edges alone
     lengths = {"torsion": contact.torsion, "clearance": contact.clearance}
     linked: Data = {} if contact.linked is None else {"linked": contact.linked}
+    if provenance.slip_error is not None:
+        data["provenance"] = {**source, "slip_error": plain_numbers(provenance.slip_error)}
     if contact.slips and provenance.normal_error:
         data["slips"] = [plain_numbers(slips) for slips in contact.slips]
     return data | {key: plain_numbers(length) for key, length in lengths.items() if length} | linked

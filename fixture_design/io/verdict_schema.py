@@ -126,6 +126,10 @@ class ProvenanceRecord(Record):
 
     kind: Literal["exact", "fitted", "approximate"]
     normal_error: Number = Field(description="[rad]")
+    slip_error: Number | None = Field(
+        None,
+        description="how far off `slips` are, where that is less than `normal_error`: surfaces of revolution [rad]",
+    )
 
 
 class FoundContactRecord(Record):

@@ -106,13 +106,13 @@ def _unit(motion: Vector | None, scale: Scale) -> Vector | None:
 def _slip_limit(contact: Contact, scale: Scale) -> float:
     """How far a contact's normal error may move its surface's own motions, and rounding [-]."""
     lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
-    return SLIP_ERRORS * contact.provenance.normal_error * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
+    return SLIP_ERRORS * contact.provenance.off_slip * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
 
 
 def _slip_fault(contact: Contact, unit: Vector, scale: Scale) -> str | None:
     """Why a motion is not known to move all surfaces of a contact along themselves; None if it is."""
     limit = _slip_limit(contact, scale)
-    if contact.provenance.normal_error > COPLANAR_ANGLE or len(contact.slips) != len(contact.normals):
+    if contact.provenance.off_slip > COPLANAR_ANGLE or len(contact.slips) != len(contact.normals):
         return f"it is not known how {contact.name}'s surfaces slip"
     for normal, slips in zip(contact.normals, contact.slips, strict=True):
         scaled = np.array([motion_scaled(slip, scale.reference, scale.length) for slip in slips])
