@@ -6,25 +6,27 @@
 * `singular_directions`: ranks and null spaces.
 * `nonnegative_least_squares`: the nearest point of a cone to a vector.
 
-They take unit rows and a relative zero, and report the values they decided on. `NAME` says which implementation runs.
+They take unit rows and a relative zero, and report the values they decided on. Each comes twice: in numpy, to read, and
+in Rust (src/), much faster, where that was built; `NAME` says which runs, and `using` chooses (`choice`).
 """
 
+from fixture_design.cones.kernel.choice import NAME, available, using
 from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.cones.kernel.double_description import MAX_RAYS, DoubleDescription, double_description
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
 from fixture_design.cones.kernel.nonnegative import nonnegative_least_squares
 from fixture_design.cones.kernel.tucker import TuckerPartition, tucker_partition
 
-NAME = "numpy"
-
 __all__ = [
     "MAX_RAYS",
     "NAME",
     "DoubleDescription",
     "TuckerPartition",
+    "available",
     "double_description",
     "minimum_norm_point",
     "nonnegative_least_squares",
     "singular_directions",
     "tucker_partition",
+    "using",
 ]

@@ -1,0 +1,97 @@
+//! Closure of many sets of rows at once, on several cores.
+
+use std::thread;
+
+use crate::closure::{Bounds, Sizes, closure};
+
+/// Sets of rows in one flat array: set k has the rows indices[offsets[k]..offsets[k + 1]], or, without indices, those
+/// places themselves.
+pub struct Ragged<'a, const D: usize> {
+    pub rows: &'a [[f64; D]],
+    pub indices: Option<&'a [i64]>,
+    pub offsets: &'a [i64],
+}
+
+impl<const D: usize> Ragged<'_, D> {
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    #[inline(always)]
+    fn set(&self, number: usize, buffer: &mut Vec<[f64; D]>) {
+        let (start, end) = (self.offsets[number] as usize, self.offsets[number + 1] as usize);
+        buffer.clear();
+        match self.indices {
+            None => buffer.extend_from_slice(&self.rows[start..end]),
+            Some(indices) => buffer.extend(indices[start..end].iter().map(|&row| self.rows[row as usize])),
+        }
+    }
+}
+
+/// What each set came to: bounds on s and, where asked for, what proves them.
+pub struct Answers {
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    /// One a place of the ragged sets, zero where there are none; empty if not asked for.
+    pub weights: Vec<f64>,
+    /// D a set, zero where there is none; empty if not asked for.
+    pub motions: Vec<f64>,
+}
+
+/// The closure of every set, divided over `threads` threads.
+pub fn closures<const D: usize>(sets: &Ragged<D>, sizes: Sizes, witnesses: bool, threads: usize) -> Answers {
+    let count = sets.len();
+    let places = sets.offsets[count] as usize;
+    let mut answers = Answers {
+        lower: vec![0.0; count],
+        upper: vec![0.0; count],
+        weights: vec![0.0; if witnesses { places } else { 0 }],
+        motions: vec![0.0; if witnesses { count * D } else { 0 }],
+    };
+    let piece = count.div_ceil(threads.max(1)).max(1);
+    thread::scope(|scope| {
+        let (mut weights, mut motions) = (&mut answers.weights[..], &mut answers.motions[..]);
+        let bounds = answers.lower.chunks_mut(piece).zip(answers.upper.chunks_mut(piece));
+        let mut workers = Vec::new();
+        for (number, (lower, upper)) in bounds.enumerate() {
+            let first = number * piece;
+            let mine = if witnesses { sets.offsets[first + lower.len()] - sets.offsets[first] } else { 0 };
+            let (own_weights, rest) = weights.split_at_mut(mine as usize);
+            weights = rest;
+            let (own_motions, rest) = motions.split_at_mut(if witnesses { lower.len() * D } else { 0 });
+            motions = rest;
+            let mut run = move || run(sets, sizes, first, lower, upper, own_weights, own_motions);
+            if threads <= 1 { run() } else { workers.push(scope.spawn(run)) }
+        }
+        for worker in workers {
+            // a panic of a worker goes on in the caller, whose border catches it
+            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        }
+    });
+    answers
+}
+
+fn run<const D: usize>(
+    sets: &Ragged<D>,
+    sizes: Sizes,
+    first: usize,
+    lower: &mut [f64],
+    upper: &mut [f64],
+    weights: &mut [f64],
+    motions: &mut [f64],
+) {
+    let mut rows = Vec::new();
+    let mut place = 0;
+    for k in 0..lower.len() {
+        sets.set(first + k, &mut rows);
+        let found: Bounds<D> = closure(&rows, sizes);
+        (lower[k], upper[k]) = (found.lower, found.upper);
+        if weights.len() >= place + rows.len() && !found.weights.is_empty() {
+            weights[place..place + rows.len()].copy_from_slice(&found.weights);
+        }
+        place += rows.len();
+        if let (Some(motion), false) = (found.motion, motions.is_empty()) {
+            motions[k * D..(k + 1) * D].copy_from_slice(&motion);
+        }
+    }
+}
