@@ -3,6 +3,7 @@
 use std::thread;
 
 use crate::closure::{Bounds, Sizes, closure};
+use crate::exact::tucker::sign_of_closure;
 
 /// Sets of rows in one flat array: set k has the rows indices[offsets[k]..offsets[k + 1]], or, without indices, those
 /// places themselves.
@@ -15,6 +16,10 @@ pub struct Ragged<'a, const D: usize> {
 impl<const D: usize> Ragged<'_, D> {
     pub fn len(&self) -> usize {
         self.offsets.len() - 1
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     #[inline(always)]
@@ -69,6 +74,31 @@ pub fn closures<const D: usize>(sets: &Ragged<D>, sizes: Sizes, witnesses: bool,
         }
     });
     answers
+}
+
+/// The exact sign of s of every set, divided over `threads` threads.
+pub fn signs<const D: usize>(sets: &Ragged<D>, filter: bool, threads: usize) -> Vec<i8> {
+    let mut signs = vec![0; sets.len()];
+    let piece = sets.len().div_ceil(threads.max(1)).max(1);
+    thread::scope(|scope| {
+        let workers: Vec<_> = signs
+            .chunks_mut(piece)
+            .enumerate()
+            .map(|(number, mine)| {
+                scope.spawn(move || {
+                    let mut rows = Vec::new();
+                    for (k, sign) in mine.iter_mut().enumerate() {
+                        sets.set(number * piece + k, &mut rows);
+                        *sign = sign_of_closure(&rows, filter);
+                    }
+                })
+            })
+            .collect();
+        for worker in workers {
+            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        }
+    });
+    signs
 }
 
 fn run<const D: usize>(

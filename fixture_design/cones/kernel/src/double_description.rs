@@ -13,6 +13,7 @@
 //! row each ray is checked against *all* rows once more: the recorded zeros and non-zeros are those of the rays returned,
 //! and a ray that is found beyond a row makes the result uncertain whatever else was seen.
 
+use crate::adjacency::adjacent_pairs;
 use crate::mask::{self, Mask};
 use crate::polish::polished;
 use crate::vector::{dot, norm, plus, scaled, unit};
@@ -127,8 +128,7 @@ impl<const D: usize, const W: usize> DoubleDescription<D, W> {
             self.saw_zero(length);
         }
         let heights: Vec<f64> = self.rays.iter().map(|ray| dot(&row, ray)).collect();
-        let mut counted = Uncounted;
-        self.cut_rays(index, &heights, usize::MAX, &mut counted, stop)
+        self.cut_rays(index, &heights, usize::MAX, &mut Uncounted, stop)
     }
 
     /// A line crosses the row: it turns into one ray, everything else slides along it onto the row.
@@ -191,10 +191,6 @@ impl<const D: usize, const W: usize> DoubleDescription<D, W> {
     }
 
     /// Append one ray on the new row for every adjacent pair across it.
-    ///
-    /// Two rays are adjacent, that is, they span a two-dimensional face, if no third ray lies on all the rows that both
-    /// lie on. Where one of them lies on just as many rows as pin a ray down, these are independent; if the two share all
-    /// but one of them, the face is two-dimensional by its rank, and no search is needed.
     #[inline(always)]
     fn rays_between(
         &mut self,
@@ -205,44 +201,22 @@ impl<const D: usize, const W: usize> DoubleDescription<D, W> {
         max_rays: usize,
         stop: &dyn Fn() -> bool,
     ) -> Result<(), Stopped> {
-        let old = self.rays.len();
         let needed = (self.ambient - self.lines.len()).saturating_sub(2);
-        let lows: Vec<(Mask<W>, bool)> =
-            below.iter().map(|&low| (self.active[low], mask::count(&self.active[low]) == needed + 1)).collect();
-        let mut blocker = 0; // the ray that came between the last pair often comes between the next
-        for (number, &up) in above.iter().enumerate() {
-            if number % 64 == 63 && stop() {
-                return Err(Stopped::Interrupted);
-            }
-            let upper = self.active[up];
-            let upper_simple = mask::count(&upper) == needed + 1;
-            for (&low, (lower, lower_simple)) in below.iter().zip(&lows) {
-                let common = mask::and(&upper, lower);
-                let shared = mask::count(&common);
-                if shared < needed {
-                    continue;
-                }
-                if !(shared == needed && (upper_simple || *lower_simple)) {
-                    let between = |ray: usize| ray != up && ray != low && mask::within(&common, &self.active[ray]);
-                    if blocker < old && between(blocker) {
-                        continue;
-                    }
-                    if let Some(found) = (0..old).find(|&ray| between(ray)) {
-                        blocker = found;
-                        continue;
-                    }
-                }
-                let ray = plus(&scaled(heights[up], &self.rays[low]), -heights[low], &self.rays[up]);
-                let mut active = common;
-                mask::insert(&mut active, index);
-                self.rays.push(unit(&ray));
-                self.active.push(active);
-                if self.rays.len() - above.len() > max_rays {
-                    return Err(Stopped::TooManyRays { rows: index + 1 });
-                }
-            }
+        let room = max_rays.saturating_add(above.len()) - self.rays.len().min(max_rays);
+        let (mut rays, mut sets) = (Vec::new(), Vec::new());
+        let done = adjacent_pairs(&self.active, above, below, needed, stop, |up, low, mut common| {
+            let ray = plus(&scaled(heights[up], &self.rays[low]), -heights[low], &self.rays[up]);
+            mask::insert(&mut common, index);
+            rays.push(unit(&ray));
+            sets.push(common);
+            rays.len() <= room
+        });
+        if rays.len() > room {
+            return Err(Stopped::TooManyRays { rows: index + 1 });
         }
-        Ok(())
+        self.rays.append(&mut rays);
+        self.active.append(&mut sets);
+        if done { Ok(()) } else { Err(Stopped::Interrupted) }
     }
 
     /// Check every ray against every row, polish those that have lost digits, and record what is seen.

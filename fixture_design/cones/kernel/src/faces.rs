@@ -71,6 +71,9 @@ pub fn faces<const D: usize, const W: usize>(
         }
     }
     found.entry(all).or_insert([0.0; D]);
+    if found.len() > most {
+        return None;
+    }
     let mut faces: Vec<Face<D, W>> =
         found.into_iter().map(|(rows, sum)| Face { rows, witness: unit(&sum) }).collect();
     faces.sort_unstable_by_key(|face| (std::cmp::Reverse(mask::count(&face.rows)), face.rows));

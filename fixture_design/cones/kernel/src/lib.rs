@@ -1,10 +1,12 @@
 //! The decisions that everything else waits for: double description, closure, contact modes; the Python package
 //! `fixture_design.cones.kernel` says what they are, and has the same in numpy.
 
+pub mod adjacency;
 pub mod batch;
 pub mod certificate;
 pub mod closure;
 pub mod double_description;
+pub mod exact;
 pub mod faces;
 pub mod mask;
 pub mod minimum_norm;

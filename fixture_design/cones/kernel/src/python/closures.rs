@@ -119,16 +119,7 @@ pub fn closures<'py>(
 ) -> PyResult<(Array1<'py>, Array1<'py>, Option<Array1<'py>>, Option<Array2<'py>>)> {
     guarded(py, || {
         let sizes = sizes(py, zero, tie, near)?;
-        let offsets: Vec<i64> = offsets.as_array().iter().copied().collect();
-        let indices: Option<Vec<i64>> = indices.map(|given| given.as_array().iter().copied().collect());
-        let count = rows.shape()[0] as i64;
-        let places = indices.as_ref().map_or(count, |given| given.len() as i64);
-        if offsets.first() != Some(&0) || !offsets.is_sorted() || offsets.last() != Some(&places) {
-            return Err(cone_error(py, format!("offsets must rise from 0 to {places}")));
-        }
-        if let Some(bad) = indices.iter().flatten().find(|&&row| row < 0 || row >= count) {
-            return Err(cone_error(py, format!("there is no row {bad}; there are {count}")));
-        }
+        let (indices, offsets) = ragged(py, rows.shape()[0], indices, &offsets)?;
         with_dimension!(py, rows.shape()[1], D => {
             let rows = arrays::unit_rows::<D>(py, &rows)?;
             let sets = Ragged { rows: &rows, indices: indices.as_deref(), offsets: &offsets };
@@ -138,6 +129,25 @@ pub fn closures<'py>(
             Ok((array1(py, &found.lower), array1(py, &found.upper), weights, motions))
         })
     })
+}
+
+/// Indices and offsets of sets of rows, looked at.
+pub fn ragged(
+    py: Python<'_>,
+    rows: usize,
+    indices: Option<PyReadonlyArray1<'_, i64>>,
+    offsets: &PyReadonlyArray1<'_, i64>,
+) -> PyResult<(Option<Vec<i64>>, Vec<i64>)> {
+    let offsets: Vec<i64> = offsets.as_array().iter().copied().collect();
+    let indices: Option<Vec<i64>> = indices.map(|given| given.as_array().iter().copied().collect());
+    let places = indices.as_ref().map_or(rows as i64, |given| given.len() as i64);
+    if offsets.first() != Some(&0) || !offsets.is_sorted() || offsets.last() != Some(&places) {
+        return Err(cone_error(py, format!("offsets must rise from 0 to {places}")));
+    }
+    if let Some(bad) = indices.iter().flatten().find(|&&row| row < 0 || row >= rows as i64) {
+        return Err(cone_error(py, format!("there is no row {bad}; there are {rows}")));
+    }
+    Ok((indices, offsets))
 }
 
 fn sizes(py: Python<'_>, zero: f64, tie: f64, near: f64) -> PyResult<Sizes> {

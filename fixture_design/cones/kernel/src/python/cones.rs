@@ -3,7 +3,7 @@
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use super::arrays::{self, array2, incidence, masks, tolerance, with_dimension, with_words};
+use super::arrays::{self, incidence, narrow_array2, masks, tolerance, with_padded_dimension, with_words};
 use super::guard::{Signals, cone_error, guarded};
 use crate::double_description::{self as dd, DoubleDescription, Stopped};
 use crate::faces::faces as all_faces;
@@ -23,13 +23,15 @@ pub fn double_description<'py>(
 ) -> PyResult<Forms<'py>> {
     guarded(py, || {
         let zero = tolerance(py, zero)?;
-        with_dimension!(py, rows.shape()[1], D => with_words!(py, rows.shape()[0], W => {
-            let both_ways = arrays::unit_rows::<D>(py, &equalities)?;
-            let rows = arrays::unit_rows::<D>(py, &rows)?;
+        let width = rows.shape()[1];
+        with_padded_dimension!(py, width, D => with_words!(py, rows.shape()[0], W => {
+            let mut both_ways = arrays::padded_unit_rows::<D>(py, &equalities, width)?;
+            both_ways.splice(..0, arrays::padding(width));
+            let rows = arrays::padded_unit_rows::<D>(py, &rows, width)?;
             let signals = Signals::new();
             let found = py.detach(|| convert::<D, W>(rows, &both_ways, zero, max_rays, &|| signals.stop()));
             let found = found.map_err(|stopped| explained(py, stopped, max_rays, signals))?;
-            Ok(forms(py, &found))
+            Ok(forms(py, &found, width))
         }))
     })
 }
@@ -57,13 +59,13 @@ pub fn add_row<'py>(
         if ambient > dimension || lines.shape()[0] > ambient {
             return Err(cone_error(py, format!("{} lines in R^{ambient} of R^{dimension}", lines.shape()[0])));
         }
-        with_dimension!(py, dimension, D => with_words!(py, count + 1, W => {
-            let mut all = arrays::rows::<D>(py, &rows)?;
-            all.push(arrays::vector(py, &row)?);
+        with_padded_dimension!(py, dimension, D => with_words!(py, count + 1, W => {
+            let mut all = arrays::padded_rows::<D>(py, &rows, dimension)?;
+            all.push(arrays::padded_vector(py, &row, dimension)?);
             let mut cone = DoubleDescription::<D, W> {
                 rows: all,
-                lines: arrays::rows(py, &lines)?,
-                rays: arrays::rows(py, &rays)?,
+                lines: arrays::padded_rows(py, &lines, dimension)?,
+                rays: arrays::padded_rows(py, &rays, dimension)?,
                 active: masks(&on),
                 zero,
                 ambient,
@@ -73,7 +75,7 @@ pub fn add_row<'py>(
             let signals = Signals::new();
             let done = py.detach(|| cone.add_last_row(&|| signals.stop()));
             done.map_err(|stopped| explained(py, stopped, usize::MAX, signals))?;
-            Ok(forms(py, &cone))
+            Ok(forms(py, &cone, dimension))
         }))
     })
 }
@@ -96,11 +98,11 @@ pub fn faces<'py>(
         if ambient > dimension || lines > ambient {
             return Err(cone_error(py, format!("{lines} lines in R^{ambient} of R^{dimension}")));
         }
-        with_dimension!(py, dimension, D => with_words!(py, count, W => {
+        with_padded_dimension!(py, dimension, D => with_words!(py, count, W => {
             let cone = DoubleDescription::<D, W> {
                 rows: vec![[0.0; D]; count],
                 lines: vec![[0.0; D]; lines],
-                rays: arrays::rows(py, &rays)?,
+                rays: arrays::padded_rows(py, &rays, dimension)?,
                 active: masks(&on),
                 ambient,
                 ..DoubleDescription::whole_space(0.0)
@@ -110,14 +112,19 @@ pub fn faces<'py>(
             };
             let sets: Vec<_> = found.iter().map(|face| face.rows).collect();
             let witnesses: Vec<_> = found.iter().map(|face| face.witness).collect();
-            Ok((incidence(py, &sets, count), array2(py, &witnesses)))
+            Ok((incidence(py, &sets, count), narrow_array2(py, &witnesses, dimension)))
         }))
     })
 }
 
-fn forms<'py, const D: usize, const W: usize>(py: Python<'py>, cone: &DoubleDescription<D, W>) -> Forms<'py> {
+fn forms<'py, const D: usize, const W: usize>(
+    py: Python<'py>,
+    cone: &DoubleDescription<D, W>,
+    width: usize,
+) -> Forms<'py> {
     let on = incidence(py, &cone.active, cone.rows.len());
-    (array2(py, &cone.lines), array2(py, &cone.rays), on, cone.ambient, cone.zero_max, cone.nonzero_min)
+    let (lines, rays) = (narrow_array2(py, &cone.lines, width), narrow_array2(py, &cone.rays, width));
+    (lines, rays, on, cone.ambient, cone.zero_max, cone.nonzero_min)
 }
 
 fn explained(py: Python<'_>, stopped: Stopped, max_rays: usize, signals: Signals) -> PyErr {

@@ -7,6 +7,7 @@
 mod arrays;
 mod closures;
 mod cones;
+mod exact;
 mod guard;
 
 use pyo3::prelude::*;
@@ -25,6 +26,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(closures::nonnegative_least_squares, module)?)?;
     module.add_function(wrap_pyfunction!(closures::closure, module)?)?;
     module.add_function(wrap_pyfunction!(closures::closures, module)?)?;
+    module.add_function(wrap_pyfunction!(exact::exact_double_description, module)?)?;
+    module.add_function(wrap_pyfunction!(exact::exact_tucker_partition, module)?)?;
+    module.add_function(wrap_pyfunction!(exact::exact_sign, module)?)?;
+    module.add_function(wrap_pyfunction!(exact::exact_signs, module)?)?;
     module.add_function(wrap_pyfunction!(guard::panic_on_purpose, module)?)?;
     Ok(())
 }
