@@ -47,7 +47,9 @@ def layouts(total: int, piece: int = 50_000) -> int:
         ties += int(tie.sum())
         undecided += int(((found.closes == -1) | (found.leaves == -1)).sum())
         done += piece
-    print(f"{done} layouts: {wrong} wrong, {undecided} undecided, {ties} ties, {filtered_differs} changed by the filter")
+    print(
+        f"{done} layouts: {wrong} wrong, {undecided} undecided, {ties} ties, {filtered_differs} changed by the filter"
+    )
     return wrong + filtered_differs
 
 

@@ -5,8 +5,8 @@
 * `minimum_norm_point`: the nearest point of a hull to the origin, for margins.
 * `singular_directions`: ranks and null spaces.
 * `nonnegative_least_squares`: the nearest point of a cone to a vector.
-* `closure_test`, `closure_tests`, `membership_test`: closure, strong accessibility, membership without CONVERT, one set of
-  rows or hundreds of thousands.
+* `closure_test`, `closure_tests`, `membership_test`: closure, strong accessibility, membership without CONVERT, of one
+  set of rows or hundreds of thousands; `branch_sets` lists the branches of a union for them.
 * `faces_of`, `exact_faces`: all faces of a cone, which are the contact modes.
 * `exact_*`: the same in rational arithmetic, for rational data.
 
@@ -14,6 +14,7 @@ They take unit rows and a relative zero, and report the values they decided on. 
 in Rust (src/), much faster, where that was built; `NAME` says which runs, and `using` chooses (`choice`).
 """
 
+from fixture_design.cones.kernel.branches import branch_sets
 from fixture_design.cones.kernel.choice import NAME, available, using
 from fixture_design.cones.kernel.closure import (
     Closure,
@@ -53,6 +54,7 @@ __all__ = [
     "Membership",
     "TuckerPartition",
     "available",
+    "branch_sets",
     "closure_bound",
     "closure_test",
     "closure_tests",

@@ -1,4 +1,4 @@
-"""What both kernels ask of their input, in the same words: finite unit rows (zero rows are allowed), a sensible zero."""
+"""What both kernels ask of their input, in the same words: finite unit rows (or zero rows), a sensible zero."""
 
 from __future__ import annotations
 

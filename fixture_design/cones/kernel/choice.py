@@ -30,7 +30,9 @@ def _at_start() -> ModuleType | None:
     if wanted not in {"", "numpy", "rust"}:
         raise KernelError(f"{VARIABLE} is {wanted!r}; there are: numpy, rust")
     if wanted == "rust" and _native is None:
-        raise KernelError(f"{VARIABLE} asks for the compiled kernel, which was not built: install with Rust 1.85 or newer")
+        raise KernelError(
+            f"{VARIABLE} asks for the compiled kernel, which was not built: install with Rust 1.85 or newer"
+        )
     return None if wanted == "numpy" else _native
 
 

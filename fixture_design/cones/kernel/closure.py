@@ -11,6 +11,7 @@ The compiled bounds hold for the rows as the floats they are, with all rounding 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -71,9 +72,9 @@ class Closures:
     @property
     def closes(self) -> np.ndarray:
         """Shape (n,), int8: 1 yes, 0 no, -1 undecided."""
-        return np.where(self.lower > self.tolerances.near, 1, np.where(self.upper <= self.tolerances.zero, 0, -1)).astype(
-            np.int8
-        )
+        return np.where(
+            self.lower > self.tolerances.near, 1, np.where(self.upper <= self.tolerances.zero, 0, -1)
+        ).astype(np.int8)
 
     @property
     def leaves(self) -> np.ndarray:
@@ -110,7 +111,9 @@ def closure_test(rows: Rows, tolerances: Tolerances = DEFAULT) -> Closure:
     """
     native = compiled(rows.shape[1])
     if native is not None:
-        return Closure(*native.closure(rows, tolerances.zero, tolerances.tie, tolerances.near), tolerances)
+        sizes = (tolerances.zero, tolerances.tie, tolerances.near)
+        lower, upper, weights, motion = native.closure(rows, *sizes)
+        return Closure(lower, upper, weights, motion, tolerances)
     require_unit_rows(rows)
     said = rows.any(axis=1)
     if not said.any():
@@ -178,14 +181,15 @@ def closure_tests(
     native = compiled(rows.shape[1])
     sizes = (tolerances.zero, tolerances.tie, tolerances.near)
     if native is not None:
-        found = native.closures(rows, indices, offsets, *sizes, witnesses, thread_count(threads))
-        return Closures(*found, tolerances)
+        count = thread_count(threads)
+        lower, upper, weights, motions = native.closures(rows, indices, offsets, *sizes, witnesses, count)
+        return Closures(lower, upper, weights, motions, tolerances)
     chosen = np.arange(len(rows)) if indices is None else indices
     if not len(offsets) or offsets[0] != 0 or (np.diff(offsets) < 0).any() or offsets[-1] != len(chosen):
         raise ConeError(f"offsets must rise from 0 to {len(chosen)}")
     if len(chosen) and not 0 <= chosen.min() <= chosen.max() < len(rows):
         raise ConeError(f"there is no row {chosen.min() if chosen.min() < 0 else chosen.max()}; there are {len(rows)}")
-    tests = [closure_test(rows[chosen[a:b]], tolerances) for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+    tests = [closure_test(rows[chosen[a:b]], tolerances) for a, b in pairwise(offsets)]
     lower, upper = np.array([t.lower for t in tests]), np.array([t.upper for t in tests])
     if not witnesses:
         return Closures(lower, upper, None, None, tolerances)

@@ -61,14 +61,13 @@ class DoubleDescription:
         return self.zero_max < self.zero / band and self.nonzero_min > self.zero * band
 
     def add_row(self, row: Vector) -> DoubleDescription:
-        """The cone cut by  row . x <= 0  (row: shape (d,), unit)."""
+        """The cone cut by  row . x <= 0  (row: shape (d,), unit). Raises ConeError for another row."""
         native = compiled(len(row), len(self.rows) + 1)
         if native is not None:
             seen = (self.zero_max, self.nonzero_min)
-            forms = native.add_row(
-                self.rows, self.lines, self.rays, self.incidence, self.ambient, self.zero, seen, row
-            )
+            forms = native.add_row(self.rows, self.lines, self.rays, self.incidence, self.ambient, self.zero, seen, row)
             return _from_forms(np.vstack([self.rows, row]), self.zero, *forms)
+        require_unit_rows(row[None, :])
         if len(self.lines):
             along_lines = self.lines @ row
             length = float(np.linalg.norm(along_lines))
@@ -213,7 +212,7 @@ def double_description(rows: Rows, equalities: Rows, zero: float, max_rays: int 
 
 def _polish(state: DoubleDescription, equalities: Rows) -> Rows:
     """The rays once more as null vectors of their active rows, which takes out what the steps have accumulated."""
-    if not len(state.rays):
+    if not len(state.rays) or state.rays.shape[1] == 1:
         return state.rays
     fixed = np.vstack([state.lines, equalities])
     stack = np.zeros((len(state.rays), len(state.rows) + len(fixed), state.rows.shape[1]))

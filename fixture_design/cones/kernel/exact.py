@@ -1,10 +1,10 @@
 """The kernel's questions in exact arithmetic, for data that are rational: decimals of files, facets from mesh vertices.
 
-Exact arithmetic on numbers that were rounded answers another question than the one that was meant (a unit normal that was
-rounded is not parallel to its opposite any more), so ties of rounded data belong to the tolerant functions; these here are
-for numbers that are what they say. A row may be scaled by any positive number: all become integer vectors without common
-factor. The compiled kernel lets floats decide what they can for certain (src/certificate.rs has the bounds and their
-proof) and does the rest in integers.
+Exact arithmetic on numbers that were rounded answers another question than the one that was meant (a unit normal that
+was rounded is not parallel to its opposite any more), so ties of rounded data belong to the tolerant functions; these
+here are for numbers that are what they say. A row may be scaled by any positive number: all become integer vectors
+without common factor. The compiled kernel lets floats decide what they can for certain (src/certificate.rs has the
+bounds and their proof) and does the rest in integers.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from itertools import pairwise
 from math import lcm
 
 import numpy as np
@@ -85,6 +86,9 @@ def integer_rows(rows: Sequence[Sequence[Rational]] | np.ndarray, dimension: int
     for index, row in enumerate(rows):
         if len(row) != dimension:
             raise DimensionError(f"row {index} has {len(row)} numbers, where rows of {dimension} go")
+        if all(type(value) is int for value in row):
+            integers.append(primitive(list(row)))  # pyright: ignore[reportArgumentType]
+            continue
         try:
             fractions = [Fraction(value) for value in row]
         except (ValueError, OverflowError, TypeError, ZeroDivisionError) as cause:
@@ -171,5 +175,5 @@ def exact_closure_signs(
         return native.exact_signs(rows, indices, offsets, True, thread_count(threads))
     require_finite(rows)
     chosen = np.arange(len(rows)) if indices is None else indices
-    sets = [rows[chosen[start:end]] for start, end in zip(offsets[:-1], offsets[1:], strict=True)]
+    sets = [rows[chosen[start:end]] for start, end in pairwise(offsets)]
     return np.array([exact_closure_sign(part, dimension=rows.shape[1]) for part in sets], dtype=np.int8)

@@ -1,8 +1,8 @@
 """All contact modes of a set of contacts: which stay in contact and which separate, with a motion for each.
 
-The motions that contacts admit are the cone face{d_1..d_m}. A motion keeps the contacts with d_i . u = 0 and separates the
-others; the sets that occur are those of the cone's faces, one for each (the lineality space, where all stay, among them).
-In space n contacts in general position have at most 6 n^2 - 36 n + 64 modes.
+The motions that contacts admit are the cone face{d_1..d_m}. A motion keeps the contacts with d_i . u = 0 and separates
+the others; the sets that occur are those of the cone's faces, one for each (the lineality space, where all stay, among
+them). In space n contacts in general position have at most 6 n^2 - 36 n + 64 modes.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ def echelon(rows: list[Integers], dimension: int) -> list[Integers]:
 def convert(
     rows: list[Integers], equalities: list[Integers], dimension: int, max_rays: int
 ) -> tuple[list[Integers], list[Integers], list[int], int]:
-    """Lines (echelon), rays (orthogonal to them), for each ray the rows it lies on as bits, and the ambient dimension."""
+    """Lines (echelon), rays (orthogonal to them), for each the rows it lies on as bits, and the ambient dimension."""
     lines: list[Integers] = [tuple(int(i == k) for k in range(dimension)) for i in range(dimension)]
     rays: list[tuple[Integers, int]] = []
     for equality in equalities:
@@ -104,8 +104,8 @@ def _across(vector: Integers, lines: list[Integers]) -> Integers:
 def partition(rows: list[Integers], dimension: int) -> tuple[list[int], Integers | None, list[Integers]]:
     """Tucker's partition: weights (positive on balanced rows), a motion that leaves the others, the balanced span.
 
-    Does -sum d_i lie in the cone of the rows? If so, 1 + its weights balance; if not, Farkas' vector leaves some rows, and
-    the rest is asked again.
+    Does -sum d_i lie in the cone of the rows? If so, 1 + its weights balance; if not, Farkas' vector leaves some rows,
+    and the rest is asked again.
     """
     weights, left = [0] * len(rows), list(range(len(rows)))
     motion: Integers | None = None

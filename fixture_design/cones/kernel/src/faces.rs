@@ -51,10 +51,7 @@ type Table<const D: usize, const W: usize> = HashMap<Mask<W>, [f64; D], BuildHas
 
 /// All faces, those with most rows first; None if there are more than `most`.
 #[inline(always)]
-pub fn faces<const D: usize, const W: usize>(
-    cone: &DoubleDescription<D, W>,
-    most: usize,
-) -> Option<Vec<Face<D, W>>> {
+pub fn faces<const D: usize, const W: usize>(cone: &DoubleDescription<D, W>, most: usize) -> Option<Vec<Face<D, W>>> {
     let all: Mask<W> = mask::first(cone.rows.len());
     let everywhere = cone.active.iter().fold(all, |rows, active| mask::and(&rows, active));
     let pointed = cone.ambient - cone.lines.len();
@@ -74,8 +71,7 @@ pub fn faces<const D: usize, const W: usize>(
     if found.len() > most {
         return None;
     }
-    let mut faces: Vec<Face<D, W>> =
-        found.into_iter().map(|(rows, sum)| Face { rows, witness: unit(&sum) }).collect();
+    let mut faces: Vec<Face<D, W>> = found.into_iter().map(|(rows, sum)| Face { rows, witness: unit(&sum) }).collect();
     faces.sort_unstable_by_key(|face| (std::cmp::Reverse(mask::count(&face.rows)), face.rows));
     Some(faces)
 }

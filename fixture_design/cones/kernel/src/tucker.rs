@@ -145,11 +145,7 @@ fn sum_of<const D: usize>(rows: &[[f64; D]], weights: &[(usize, f64)]) -> [f64; 
 ///
 /// The new rows balance up to something in the span of the core; the core takes that up, with any sign, and enough of its
 /// own positive balance makes the signs right.
-fn with_level<const D: usize>(
-    rows: &[[f64; D]],
-    core: &[(usize, f64)],
-    level: &[(usize, f64)],
-) -> Vec<(usize, f64)> {
+fn with_level<const D: usize>(rows: &[[f64; D]], core: &[(usize, f64)], level: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let mut all: Vec<(usize, f64)> = if core.is_empty() {
         level.to_vec()
     } else {

@@ -75,10 +75,9 @@ fn solution<const D: usize>(rows: &[[IBig; D]], target: &[IBig; D]) -> Farkas<IB
         nonnegative_solution(&columns?, &small(target)?)
     };
     match in_words() {
-        Some(Farkas::Inside { weights, denominator }) => Farkas::Inside {
-            weights: weights.into_iter().map(IBig::from).collect(),
-            denominator: denominator.into(),
-        },
+        Some(Farkas::Inside { weights, denominator }) => {
+            Farkas::Inside { weights: weights.into_iter().map(IBig::from).collect(), denominator: denominator.into() }
+        }
         Some(Farkas::Outside { separating }) => Farkas::Outside { separating: separating.map(IBig::from) },
         None => nonnegative_solution(rows, target).expect("long integers do not overflow"),
     }
@@ -156,9 +155,8 @@ mod tests {
     fn the_partition_is_tucker_s() {
         let mut random = Random::new(8);
         for _ in 0..1000 {
-            let rows: Vec<[IBig; 4]> = (0..random.below(9))
-                .map(|_| std::array::from_fn(|_| IBig::from(random.below(5) as i64 - 2)))
-                .collect();
+            let rows: Vec<[IBig; 4]> =
+                (0..random.below(9)).map(|_| std::array::from_fn(|_| IBig::from(random.below(5) as i64 - 2))).collect();
             let found = tucker_partition(&rows);
             for k in 0..4 {
                 let sum: IBig = rows.iter().zip(&found.weights).map(|(row, weight)| &row[k] * weight).sum();

@@ -16,14 +16,38 @@ const UNIT: f64 = 1e-6;
 macro_rules! with_dimension {
     ($py:expr, $dimension:expr, $D:ident => $work:expr) => {
         match $dimension {
-            1 => { const $D: usize = 1; $work }
-            2 => { const $D: usize = 2; $work }
-            3 => { const $D: usize = 3; $work }
-            4 => { const $D: usize = 4; $work }
-            5 => { const $D: usize = 5; $work }
-            6 => { const $D: usize = 6; $work }
-            7 => { const $D: usize = 7; $work }
-            8 => { const $D: usize = 8; $work }
+            1 => {
+                const $D: usize = 1;
+                $work
+            }
+            2 => {
+                const $D: usize = 2;
+                $work
+            }
+            3 => {
+                const $D: usize = 3;
+                $work
+            }
+            4 => {
+                const $D: usize = 4;
+                $work
+            }
+            5 => {
+                const $D: usize = 5;
+                $work
+            }
+            6 => {
+                const $D: usize = 6;
+                $work
+            }
+            7 => {
+                const $D: usize = 7;
+                $work
+            }
+            8 => {
+                const $D: usize = 8;
+                $work
+            }
             other => Err($crate::python::guard::cone_error(
                 $py,
                 format!("the compiled kernel works in R^1 to R^8, not in R^{other}"),
@@ -37,12 +61,30 @@ macro_rules! with_dimension {
 macro_rules! with_padded_dimension {
     ($py:expr, $dimension:expr, $D:ident => $work:expr) => {
         match $dimension {
-            1 | 2 => { const $D: usize = 2; $work }
-            3 => { const $D: usize = 3; $work }
-            4 => { const $D: usize = 4; $work }
-            5 | 6 => { const $D: usize = 6; $work }
-            7 => { const $D: usize = 7; $work }
-            8 => { const $D: usize = 8; $work }
+            1 | 2 => {
+                const $D: usize = 2;
+                $work
+            }
+            3 => {
+                const $D: usize = 3;
+                $work
+            }
+            4 => {
+                const $D: usize = 4;
+                $work
+            }
+            5 | 6 => {
+                const $D: usize = 6;
+                $work
+            }
+            7 => {
+                const $D: usize = 7;
+                $work
+            }
+            8 => {
+                const $D: usize = 8;
+                $work
+            }
             other => Err($crate::python::guard::cone_error(
                 $py,
                 format!("the compiled kernel works in R^1 to R^8, not in R^{other}"),
@@ -55,9 +97,18 @@ macro_rules! with_padded_dimension {
 macro_rules! with_words {
     ($py:expr, $rows:expr, $W:ident => $work:expr) => {
         match $rows {
-            0..=64 => { const $W: usize = 1; $work }
-            65..=128 => { const $W: usize = 2; $work }
-            129..=512 => { const $W: usize = 8; $work }
+            0..=64 => {
+                const $W: usize = 1;
+                $work
+            }
+            65..=128 => {
+                const $W: usize = 2;
+                $work
+            }
+            129..=512 => {
+                const $W: usize = 8;
+                $work
+            }
             other => Err($crate::python::guard::cone_error(
                 $py,
                 format!("the compiled kernel takes up to 512 rows, not {other}"),
@@ -110,13 +161,19 @@ pub fn padded_unit_rows<const D: usize>(
     width: usize,
 ) -> PyResult<Vec<[f64; D]>> {
     let rows = padded_rows::<D>(py, array, width)?;
+    require_unit(py, &rows)?;
+    Ok(rows)
+}
+
+/// Unit rows, or zero ones.
+pub fn require_unit<const D: usize>(py: Python<'_>, rows: &[[f64; D]]) -> PyResult<()> {
     for (index, row) in rows.iter().enumerate() {
         let squared: f64 = row.iter().map(|value| value * value).sum();
         if (squared - 1.0).abs() > 2.0 * UNIT && row.iter().any(|&value| value != 0.0) {
             return Err(cone_error(py, format!("row {index} has the length {:e}, not 1", squared.sqrt())));
         }
     }
-    Ok(rows)
+    Ok(())
 }
 
 pub fn vector<const D: usize>(py: Python<'_>, array: &PyReadonlyArray1<'_, f64>) -> PyResult<[f64; D]> {
@@ -158,7 +215,11 @@ pub fn array2<'py, const D: usize>(py: Python<'py>, rows: &[[f64; D]]) -> Bound<
 }
 
 /// The first `width` numbers of each row.
-pub fn narrow_array2<'py, const D: usize>(py: Python<'py>, rows: &[[f64; D]], width: usize) -> Bound<'py, PyArray2<f64>> {
+pub fn narrow_array2<'py, const D: usize>(
+    py: Python<'py>,
+    rows: &[[f64; D]],
+    width: usize,
+) -> Bound<'py, PyArray2<f64>> {
     // SAFETY: a fresh C-contiguous array, filled completely before anybody else sees it
     unsafe {
         let array = PyArray2::new(py, [rows.len(), width], false);

@@ -16,11 +16,7 @@ type Array2<'py> = Bound<'py, PyArray2<f64>>;
 type Partition<'py> = (Bound<'py, PyArray1<bool>>, Array1<'py>, Array2<'py>, Option<Array1<'py>>, f64, f64);
 
 #[pyfunction]
-pub fn tucker_partition<'py>(
-    py: Python<'py>,
-    rows: PyReadonlyArray2<'py, f64>,
-    zero: f64,
-) -> PyResult<Partition<'py>> {
+pub fn tucker_partition<'py>(py: Python<'py>, rows: PyReadonlyArray2<'py, f64>, zero: f64) -> PyResult<Partition<'py>> {
     guarded(py, || {
         let zero = tolerance(py, zero)?;
         with_dimension!(py, rows.shape()[1], D => {

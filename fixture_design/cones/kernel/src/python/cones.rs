@@ -3,14 +3,13 @@
 use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use super::arrays::{self, incidence, narrow_array2, masks, tolerance, with_padded_dimension, with_words};
+use super::arrays::{self, incidence, masks, narrow_array2, tolerance, with_padded_dimension, with_words};
 use super::guard::{Signals, cone_error, guarded};
 use crate::double_description::{self as dd, DoubleDescription, Stopped};
 use crate::faces::faces as all_faces;
 
 /// lines, rays, incidence, dimension that the equalities leave, largest zero, smallest non-zero.
-type Forms<'py> =
-    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<bool>>, usize, f64, f64);
+type Forms<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<bool>>, usize, f64, f64);
 
 /// Both forms of {x : rows . x <= 0, equalities . x = 0}.
 #[pyfunction]
@@ -61,7 +60,9 @@ pub fn add_row<'py>(
         }
         with_padded_dimension!(py, dimension, D => with_words!(py, count + 1, W => {
             let mut all = arrays::padded_rows::<D>(py, &rows, dimension)?;
-            all.push(arrays::padded_vector(py, &row, dimension)?);
+            let row = arrays::padded_vector(py, &row, dimension)?;
+            arrays::require_unit(py, &[row])?;
+            all.push(row);
             let mut cone = DoubleDescription::<D, W> {
                 rows: all,
                 lines: arrays::padded_rows(py, &lines, dimension)?,

@@ -70,12 +70,7 @@ pub fn exact_tucker_partition<'py>(
 
 /// The sign of s for rows of Python integers.
 #[pyfunction]
-pub fn exact_sign(
-    py: Python<'_>,
-    rows: Vec<Vec<Bound<'_, PyAny>>>,
-    dimension: usize,
-    filter: bool,
-) -> PyResult<i8> {
+pub fn exact_sign(py: Python<'_>, rows: Vec<Vec<Bound<'_, PyAny>>>, dimension: usize, filter: bool) -> PyResult<i8> {
     guarded(py, || {
         with_dimension!(py, dimension, D => {
             let rows = integers::<D>(py, &rows, D)?;
@@ -106,11 +101,7 @@ pub fn exact_signs<'py>(
 }
 
 /// Integer vectors without common factor, of `width` numbers, padded with zeros.
-fn integers<const D: usize>(
-    py: Python<'_>,
-    rows: &[Vec<Bound<'_, PyAny>>],
-    width: usize,
-) -> PyResult<Vec<[IBig; D]>> {
+fn integers<const D: usize>(py: Python<'_>, rows: &[Vec<Bound<'_, PyAny>>], width: usize) -> PyResult<Vec<[IBig; D]>> {
     let mut all = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
         let values: PyResult<Vec<IBig>> = row.iter().map(integer).collect();
