@@ -102,6 +102,21 @@ def test_membership(vectors: Vectors, rng: np.random.Generator):
         assert target @ found.separating > 0
 
 
+@given(seeds(), st.sampled_from([1, 3]))
+def test_memberships_in_batches(rng: np.random.Generator, threads: int):
+    parts = [unit_rows(rng.integers(-2, 3, size=(rng.integers(0, 7), 3)).astype(float))[0] for _ in range(8)]
+    vectors, _ = unit_rows(rng.normal(size=(8, 3)))
+    offsets = np.concatenate([[0], np.cumsum([len(part) for part in parts])])
+    found = kernel.membership_tests(vectors, np.vstack(parts), offsets, threads=threads)
+    for k, part in enumerate(parts):
+        alone = kernel.membership_test(vectors[k], part)
+        assert {1: True, 0: False, -1: None}[int(found.inside[k])] is alone.inside
+        assert found.distances[k] == alone.distance
+        assert found.weights[offsets[k] : offsets[k + 1]].tolist() == alone.weights.tolist()
+    with pytest.raises(ConeError, match="7 vectors for 8 sets"):
+        kernel.membership_tests(vectors[:7], np.vstack(parts), offsets)
+
+
 @pytest.mark.parametrize("slope", [1e-12, 1e-10, 1e-9, 1e-8, 1e-6])
 def test_near_a_tie_it_is_undecided_and_beyond_it_is_not(slope: float):
     """Three rows around the origin, two of them `slope` off one line: s is about half of it."""

@@ -33,8 +33,10 @@ def test_rust_is_used_where_it_was_built(implementation: str):
     assert choice.compiled(6, 5000) is None
 
 
-def test_one_that_is_not_there():
-    with pytest.raises(KernelError, match="no kernel 'fortran'"), kernel.using("fortran"):  # pyright: ignore[reportArgumentType]
+def test_one_that_is_not_there(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(choice, "_native", None)
+    assert choice.available() == ("numpy",)
+    with pytest.raises(KernelError, match="no kernel 'rust' here; there are: numpy"), choice.using("rust"):
         pass
 
 

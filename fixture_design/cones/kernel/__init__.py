@@ -5,7 +5,7 @@
 * `minimum_norm_point`: the nearest point of a hull to the origin, for margins.
 * `singular_directions`: ranks and null spaces.
 * `nonnegative_least_squares`: the nearest point of a cone to a vector.
-* `closure_test`, `closure_tests`, `membership_test`: closure, strong accessibility, membership without CONVERT, of one
+* `closure_test`, `closure_tests`, `membership_tests`: closure, strong accessibility, membership without CONVERT, of one
   set of rows or hundreds of thousands; `branch_sets` lists the branches of a union for them.
 * `faces_of`, `exact_faces`: all faces of a cone, which are the contact modes.
 * `exact_*`: the same in rational arithmetic, for rational data.
@@ -20,10 +20,12 @@ from fixture_design.cones.kernel.closure import (
     Closure,
     Closures,
     Membership,
+    Memberships,
     closure_bound,
     closure_test,
     closure_tests,
     membership_test,
+    membership_tests,
 )
 from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.cones.kernel.double_description import MAX_RAYS, DoubleDescription, double_description
@@ -52,6 +54,7 @@ __all__ = [
     "ExactPartition",
     "Faces",
     "Membership",
+    "Memberships",
     "TuckerPartition",
     "available",
     "branch_sets",
@@ -67,6 +70,7 @@ __all__ = [
     "faces_of",
     "integer_rows",
     "membership_test",
+    "membership_tests",
     "minimum_norm_point",
     "nonnegative_least_squares",
     "singular_directions",

@@ -100,6 +100,33 @@ class Membership:
     separating: Vector | None
 
 
+@dataclass(frozen=True, eq=False)
+class Memberships:
+    """The same for n vectors, each with a set of rows of its own.
+
+    Attributes:
+        residuals: shape (n, d), each vector less the nearest point of its cone: no row of the set points along it.
+        weights: >= 0, one for each place of the ragged sets.
+        tolerances: what counts as zero.
+    """
+
+    residuals: Rows
+    weights: Weights
+    tolerances: Tolerances
+
+    @property
+    def distances(self) -> Weights:
+        """Shape (n,), of the vectors from their cones."""
+        return np.linalg.norm(self.residuals, axis=1)
+
+    @property
+    def inside(self) -> np.ndarray:
+        """Shape (n,), int8: 1 yes, 0 no, -1 undecided."""
+        distances = self.distances
+        far = np.where(distances > self.tolerances.near, 0, -1)
+        return np.where(distances <= self.tolerances.zero, 1, far).astype(np.int8)
+
+
 def closure_test(rows: Rows, tolerances: Tolerances = DEFAULT) -> Closure:
     """Bounds on s that settle its sign, where the tolerances allow it.
 
@@ -184,11 +211,7 @@ def closure_tests(
         count = thread_count(threads)
         lower, upper, weights, motions = native.closures(rows, indices, offsets, *sizes, witnesses, count)
         return Closures(lower, upper, weights, motions, tolerances)
-    chosen = np.arange(len(rows)) if indices is None else indices
-    if not len(offsets) or offsets[0] != 0 or (np.diff(offsets) < 0).any() or offsets[-1] != len(chosen):
-        raise ConeError(f"offsets must rise from 0 to {len(chosen)}")
-    if len(chosen) and not 0 <= chosen.min() <= chosen.max() < len(rows):
-        raise ConeError(f"there is no row {chosen.min() if chosen.min() < 0 else chosen.max()}; there are {len(rows)}")
+    chosen = _places(rows, offsets, indices)
     tests = [closure_test(rows[chosen[a:b]], tolerances) for a, b in pairwise(offsets)]
     lower, upper = np.array([t.lower for t in tests]), np.array([t.upper for t in tests])
     if not witnesses:
@@ -209,15 +232,61 @@ def membership_test(vector: Vector, rows: Rows, tolerances: Tolerances = DEFAULT
     Raises:
         ConeError: vectors that are not unit, not finite.
     """
-    require_unit_rows(np.vstack([rows, vector]))
-    weights = nonnegative_least_squares(rows.T, vector)
-    passive = weights > 0
-    rest = vector - weights @ rows
-    if passive.any():
-        # what the rows that take part cannot reach, accurate relative to itself
-        basis = np.linalg.qr(rows[passive].T)[0]
-        rest = vector - basis @ (basis.T @ vector)
-        rest = rest - basis @ (basis.T @ rest)
-    distance = float(np.linalg.norm(rest))
-    inside = True if distance <= tolerances.zero else None if distance <= tolerances.near else False
-    return Membership(inside, distance, weights, rest / distance if distance > 0 else None)
+    found = membership_tests(vector[None, :], rows, np.array([0, len(rows)]), tolerances=tolerances, threads=1)
+    distance = float(found.distances[0])
+    separating = found.residuals[0] / distance if distance > 0 else None
+    inside = {1: True, 0: False, -1: None}[int(found.inside[0])]
+    return Membership(inside, distance, found.weights, separating)
+
+
+def membership_tests(
+    vectors: Rows,
+    rows: Rows,
+    offsets: Indices,
+    indices: Indices | None = None,
+    tolerances: Tolerances = DEFAULT,
+    *,
+    threads: int | None = None,
+) -> Memberships:
+    """`membership_test` of many vectors, each with a set of rows of its own.
+
+    Args:
+        vectors: shape (n, d), unit.  rows, offsets, indices, threads: as `closure_tests`.
+
+    Raises:
+        ConeError: vectors that are not unit, not finite; offsets or indices that do not fit.
+    """
+    native = compiled(rows.shape[1])
+    if native is not None:
+        residuals, weights = native.memberships(vectors, rows, indices, offsets, thread_count(threads))
+        return Memberships(residuals, weights, tolerances)
+    chosen = _places(rows, offsets, indices)
+    if len(vectors) + 1 != len(offsets):
+        raise ConeError(f"{len(vectors)} vectors for {len(offsets) - 1} sets of rows")
+    require_unit_rows(rows)
+    require_unit_rows(vectors)
+    residuals, weights = np.zeros(vectors.shape), np.zeros(len(chosen))
+    for k, (start, end) in enumerate(pairwise(offsets)):
+        part = rows[chosen[start:end]]
+        weights[start:end] = nonnegative_least_squares(part.T, vectors[k])
+        residuals[k] = _unreached(part[weights[start:end] > 0], vectors[k])
+    return Memberships(residuals, weights, tolerances)
+
+
+def _unreached(rows: Rows, vector: Vector) -> Vector:
+    """The part of the vector orthogonal to the rows, accurate relative to itself."""
+    if not len(rows):
+        return vector
+    basis = np.linalg.qr(rows.T)[0]
+    rest = vector - basis @ (basis.T @ vector)
+    return rest - basis @ (basis.T @ rest)
+
+
+def _places(rows: Rows, offsets: Indices, indices: Indices | None) -> Indices:
+    """The row at each place of the ragged sets."""
+    chosen = np.arange(len(rows)) if indices is None else indices
+    if not len(offsets) or offsets[0] != 0 or (np.diff(offsets) < 0).any() or offsets[-1] != len(chosen):
+        raise ConeError(f"offsets must rise from 0 to {len(chosen)}")
+    if len(chosen) and not 0 <= chosen.min() <= chosen.max() < len(rows):
+        raise ConeError(f"there is no row {chosen.min() if chosen.min() < 0 else chosen.max()}; there are {len(rows)}")
+    return chosen

@@ -4,6 +4,7 @@ use std::thread;
 
 use crate::closure::{Bounds, Sizes, closure};
 use crate::exact::tucker::sign_of_closure;
+use crate::nonnegative::nonnegative_least_squares;
 
 /// Sets of rows in one flat array: set k has the rows indices[offsets[k]..offsets[k + 1]], or, without indices, those
 /// places themselves.
@@ -74,6 +75,48 @@ pub fn closures<const D: usize>(sets: &Ragged<D>, sizes: Sizes, witnesses: bool,
         }
     });
     answers
+}
+
+/// How near the cone of each set comes to a vector, and what is left.
+pub struct Distances {
+    /// D a set: the vector less its nearest point of the cone.
+    pub residuals: Vec<f64>,
+    /// One a place of the ragged sets: the nearest point's weights.
+    pub weights: Vec<f64>,
+}
+
+/// For every set the point of its cone nearest to a vector of its own, divided over `threads` threads.
+pub fn memberships<const D: usize>(sets: &Ragged<D>, vectors: &[[f64; D]], threads: usize) -> Distances {
+    let count = sets.len();
+    let mut residuals = vec![0.0; count * D];
+    let mut weights = vec![0.0; sets.offsets[count] as usize];
+    let piece = count.div_ceil(threads.max(1)).max(1);
+    thread::scope(|scope| {
+        let mut left = &mut weights[..];
+        let mut workers = Vec::new();
+        for (number, mine) in residuals.chunks_mut(piece * D).enumerate() {
+            let first = number * piece;
+            let places = sets.offsets[first + mine.len() / D] - sets.offsets[first];
+            let (own, rest) = left.split_at_mut(places as usize);
+            left = rest;
+            workers.push(scope.spawn(move || {
+                let mut rows = Vec::new();
+                for (k, residual) in mine.chunks_exact_mut(D).enumerate() {
+                    sets.set(first + k, &mut rows);
+                    let found = nonnegative_least_squares(&rows, &vectors[first + k]);
+                    residual.copy_from_slice(&found.residual);
+                    let place = (sets.offsets[first + k] - sets.offsets[first]) as usize;
+                    for (row, weight) in found.passive {
+                        own[place + row] = weight;
+                    }
+                }
+            }));
+        }
+        for worker in workers {
+            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        }
+    });
+    Distances { residuals, weights }
 }
 
 /// The exact sign of s of every set, divided over `threads` threads.

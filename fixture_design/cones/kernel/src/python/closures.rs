@@ -127,6 +127,32 @@ pub fn closures<'py>(
     })
 }
 
+/// What is left of a vector a set next to the nearest point of the set's cone, and that point's weights, one a place.
+#[pyfunction]
+pub fn memberships<'py>(
+    py: Python<'py>,
+    vectors: PyReadonlyArray2<'py, f64>,
+    rows: PyReadonlyArray2<'py, f64>,
+    indices: Option<PyReadonlyArray1<'py, i64>>,
+    offsets: PyReadonlyArray1<'py, i64>,
+    threads: usize,
+) -> PyResult<(Array2<'py>, Array1<'py>)> {
+    guarded(py, || {
+        let (indices, offsets) = ragged(py, rows.shape()[0], indices, &offsets)?;
+        if vectors.shape()[0] + 1 != offsets.len() {
+            let words = format!("{} vectors for {} sets of rows", vectors.shape()[0], offsets.len() - 1);
+            return Err(cone_error(py, words));
+        }
+        with_dimension!(py, rows.shape()[1], D => {
+            let rows = arrays::unit_rows::<D>(py, &rows)?;
+            let vectors = arrays::unit_rows::<D>(py, &vectors)?;
+            let sets = Ragged { rows: &rows, indices: indices.as_deref(), offsets: &offsets };
+            let found = py.detach(|| batch::memberships(&sets, &vectors, threads.min(sets.len().max(1))));
+            Ok((array1(py, &found.residuals).reshape([sets.len(), D])?, array1(py, &found.weights)))
+        })
+    })
+}
+
 /// Indices and offsets of sets of rows, looked at.
 pub fn ragged(
     py: Python<'_>,

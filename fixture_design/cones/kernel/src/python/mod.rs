@@ -26,6 +26,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(closures::nonnegative_least_squares, module)?)?;
     module.add_function(wrap_pyfunction!(closures::closure, module)?)?;
     module.add_function(wrap_pyfunction!(closures::closures, module)?)?;
+    module.add_function(wrap_pyfunction!(closures::memberships, module)?)?;
     module.add_function(wrap_pyfunction!(exact::exact_double_description, module)?)?;
     module.add_function(wrap_pyfunction!(exact::exact_tucker_partition, module)?)?;
     module.add_function(wrap_pyfunction!(exact::exact_sign, module)?)?;
