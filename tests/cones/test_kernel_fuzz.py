@@ -77,6 +77,31 @@ def test_an_answer_or_an_error_of_ours(entry: str, rows: np.ndarray):
     assert np.isfinite(rows).all()
 
 
+def _facts(entry: str, rows: np.ndarray) -> list[np.ndarray]:
+    """What an entry point returned, as arrays of numbers."""
+    found = ENTRIES[entry](rows)
+    values = found if isinstance(found, tuple) else [getattr(found, name) for name in _fields(found)] or [found]
+    return [np.asarray(value, dtype=float) for value in values]
+
+
+def _fields(found: object) -> list[str]:
+    return [name for name in getattr(found, "__dataclass_fields__", {}) if name != "tolerances"]
+
+
+@pytest.mark.parametrize("entry", ENTRIES)
+@pytest.mark.parametrize("d", [2, 3, 5, 6])
+def test_the_memory_layout_does_not_matter(entry: str, d: int):
+    rows = np.random.default_rng(d).normal(size=(8, d))
+    rows = np.ascontiguousarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+    expected = _facts(entry, rows)
+    wide = np.zeros((16, 3 * d))
+    wide[::2, ::3] = rows
+    backwards = np.ascontiguousarray(rows[::-1, ::-1])
+    for other in (np.asfortranarray(rows), wide[::2, ::3], backwards[::-1, ::-1]):
+        for value, same in zip(_facts(entry, other), expected, strict=True):
+            assert np.allclose(value, same, rtol=1e-9, atol=1e-12, equal_nan=True)
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("entry", sorted(set(ENTRIES) - {"exact_faces", "membership_test"}))
 def test_what_is_not_finite_is_an_error(entry: str, bad: float):

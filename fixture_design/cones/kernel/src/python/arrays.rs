@@ -130,7 +130,10 @@ pub fn padded_rows<const D: usize>(
         return Err(cone_error(py, words));
     }
     let rows: Vec<[f64; D]> = match array.as_slice() {
-        Ok(flat) if width == D => flat.chunks_exact(D).map(|row| row.try_into().expect("D numbers")).collect(),
+        // contiguous by columns is contiguous too
+        Ok(flat) if width == D && array.is_c_contiguous() => {
+            flat.chunks_exact(D).map(|row| row.try_into().expect("D numbers")).collect()
+        }
         _ => {
             let padded = |k: usize, row: &[f64]| row.get(k).copied().unwrap_or(0.0);
             let rows = array.as_array();
