@@ -15,7 +15,8 @@ The folders state the theory, and each imports only from those to its right::
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
-  point of a hull nearest to the origin. `cones.thesis` is CONVERT as the thesis has it, for comparison.
+  point of a hull nearest to the origin; in numpy and, where it was built, in Rust. `cones.thesis` is CONVERT as the
+  thesis has it, for comparison.
 * `contacts`: a contact is a point and an AND of ORs of normals; face vectors, friction cones; `Constraints` are the
   same as flat arrays.
 * `layout`: the nouns: part, element, layout, group, verdict.

@@ -73,6 +73,10 @@ def looking_at(source: str | Path | None, place: str | None) -> Iterator[None]:
         raise
 
 
+class KernelError(FixtureDesignError):
+    """The compiled kernel failed where it should not have, or was asked for where it is not: a fault of ours."""
+
+
 class FileFormatError(InputError):
     """A file cannot be read, does not parse, or does not follow its schema."""
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Rows, Vector, Weights
-from fixture_design.cones.kernel import TuckerPartition, nonnegative_least_squares, tucker_partition
+from fixture_design.cones.kernel import TuckerPartition, closure_bound, nonnegative_least_squares, tucker_partition
 from fixture_design.tolerances import Tolerances
 
 #: Weights prove closure well enough if their bound is this part of what the hull's facets say [-].
@@ -89,19 +89,6 @@ def _bounds_from(partition: TuckerPartition, rows: Rows, errors: Weights) -> Bou
     lower = closure_bound(rows, weights) if partition.closes else -float(np.linalg.norm(weights @ rows))
     slack = float(errors.max()) if partition.closes else float(weights @ errors)
     return Bounds(lower - slack, upper, motion, weights)
-
-
-def closure_bound(rows: Rows, weights: Weights) -> float:
-    """A lower bound on s for weights w >= 0 of sum 1.
-
-    (sigma_min(diag(w) D) - |D^T w|) / (1 + |w|) where that is positive, else -|D^T w|: the first bound's proof needs
-    s >= 0, which it has where sigma_min is the larger one.
-    """
-    residual = float(np.linalg.norm(weights @ rows))
-    if len(rows) < rows.shape[1]:
-        return -residual
-    smallest = float(np.linalg.svd(weights[:, None] * rows, compute_uv=False)[-1])
-    return (smallest - residual) / (1 + float(np.linalg.norm(weights))) if smallest > residual else -residual
 
 
 def _hull_bounds(rows: Rows, errors: Weights, weights: Weights) -> Bounds:

@@ -12,6 +12,7 @@ import numpy as np
 from fixture_design.arrays import Incidence, Rows, Vector, read_only
 from fixture_design.cones.cone import FaceForm, PolyhedralConvexCone, SpanForm, unit_rows
 from fixture_design.cones.kernel import MAX_RAYS, DoubleDescription, double_description, singular_directions
+from fixture_design.errors import ConeError
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 
@@ -127,11 +128,19 @@ def convert_rows(
     found = double_description(unit, unit_equalities, tolerances.tie, max_rays)
     if found.is_certain(tolerances.band):
         return _conversion(found, kept, True)
-    others = [double_description(unit, unit_equalities, tolerances.tie * factor, max_rays) for factor in (0.01, 100.0)]
-    certain = [other for other in others if other.is_certain(tolerances.band)]
+    others = [_retried(unit, unit_equalities, tolerances.tie * factor, max_rays) for factor in (0.01, 100.0)]
+    certain = [other for other in others if other is not None and other.is_certain(tolerances.band)]
     if not certain or any(not _same_structure(certain[0], other) for other in certain[1:]):
         return _conversion(found, kept, False)
     return _conversion(certain[0], kept, True)
+
+
+def _retried(rows: Rows, equalities: Rows, zero: float, max_rays: int) -> DoubleDescription | None:
+    """At another zero, which may be a wrong one: rays then multiply without being any, and it says nothing."""
+    try:
+        return double_description(rows, equalities, zero, max_rays)
+    except ConeError:
+        return None
 
 
 def _same_structure(first: DoubleDescription, second: DoubleDescription) -> bool:

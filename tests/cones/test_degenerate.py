@@ -7,7 +7,7 @@ rounding and by the noise. A wrong count is allowed only where `certain` is Fals
 import numpy as np
 import pytest
 
-from fixture_design.cones import convert_rows
+from fixture_design.cones import convert_rows, kernel
 from tests import exact
 
 CONES = 150
@@ -50,6 +50,18 @@ def test_no_wrong_structure_goes_unflagged(d: int, noise: float):
             wrong.append((number, rows.tolist(), len(found.vectors), len(rays)))
     assert not wrong
     assert flagged <= CONES // 50
+
+
+@pytest.mark.parametrize(("count", "rays"), [(20, 272), (50, 2162)])
+def test_cyclic_cones(count: int, rays: int, implementation: str):
+    """Neighbours are nearly dependent: floats have all the rays, or say that they may not; integers have them."""
+    if implementation == "numpy":
+        count, rays = 12, 72  # (n - 3) (n - 4) for n face vectors; fewer for the sake of time
+    points = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    found = convert_rows(np.vander(points, 6, increasing=True), np.zeros((0, 6)))
+    assert len(found.vectors) == rays or not found.certain
+    whole = [[t**k for k in range(6)] for t in range(-count // 2, count // 2)]
+    assert len(kernel.exact_double_description(whole, dimension=6).rays) == rays
 
 
 @pytest.mark.parametrize("exponent", [-16, -14, -12, -11, -7, -6, -5, -4])

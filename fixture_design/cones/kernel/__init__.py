@@ -5,26 +5,75 @@
 * `minimum_norm_point`: the nearest point of a hull to the origin, for margins.
 * `singular_directions`: ranks and null spaces.
 * `nonnegative_least_squares`: the nearest point of a cone to a vector.
+* `closure_test`, `closure_tests`, `membership_tests`: closure, strong accessibility, membership without CONVERT, of one
+  set of rows or hundreds of thousands; `branch_sets` lists the branches of a union for them.
+* `faces_of`, `exact_faces`: all faces of a cone, which are the contact modes.
+* `exact_*`: the same in rational arithmetic, for rational data.
 
-They take unit rows and a relative zero, and report the values they decided on. `NAME` says which implementation runs.
+They take unit rows and a relative zero, and report the values they decided on. Each comes twice: in numpy, to read, and
+in Rust (src/), much faster, where that was built; `NAME` says which runs, and `using` chooses (`choice`).
 """
 
+from fixture_design.cones.kernel.branches import branch_sets
+from fixture_design.cones.kernel.choice import NAME, available, using
+from fixture_design.cones.kernel.closure import (
+    Closure,
+    Closures,
+    Membership,
+    Memberships,
+    closure_bound,
+    closure_test,
+    closure_tests,
+    membership_test,
+    membership_tests,
+)
 from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.cones.kernel.double_description import MAX_RAYS, DoubleDescription, double_description
+from fixture_design.cones.kernel.exact import (
+    ExactDescription,
+    ExactPartition,
+    exact_closure_sign,
+    exact_closure_signs,
+    exact_double_description,
+    exact_tucker_partition,
+    integer_rows,
+)
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
+from fixture_design.cones.kernel.modes import MAX_FACES, Faces, exact_faces, faces_of
 from fixture_design.cones.kernel.nonnegative import nonnegative_least_squares
 from fixture_design.cones.kernel.tucker import TuckerPartition, tucker_partition
 
-NAME = "numpy"
-
 __all__ = [
+    "MAX_FACES",
     "MAX_RAYS",
     "NAME",
+    "Closure",
+    "Closures",
     "DoubleDescription",
+    "ExactDescription",
+    "ExactPartition",
+    "Faces",
+    "Membership",
+    "Memberships",
     "TuckerPartition",
+    "available",
+    "branch_sets",
+    "closure_bound",
+    "closure_test",
+    "closure_tests",
     "double_description",
+    "exact_closure_sign",
+    "exact_closure_signs",
+    "exact_double_description",
+    "exact_faces",
+    "exact_tucker_partition",
+    "faces_of",
+    "integer_rows",
+    "membership_test",
+    "membership_tests",
     "minimum_norm_point",
     "nonnegative_least_squares",
     "singular_directions",
     "tucker_partition",
+    "using",
 ]

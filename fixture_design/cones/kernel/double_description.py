@@ -16,6 +16,8 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Incidence, Rows, Vector
+from fixture_design.cones.kernel.checks import require_tolerance, require_unit_rows
+from fixture_design.cones.kernel.choice import compiled
 from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.errors import ConeError
 
@@ -59,7 +61,13 @@ class DoubleDescription:
         return self.zero_max < self.zero / band and self.nonzero_min > self.zero * band
 
     def add_row(self, row: Vector) -> DoubleDescription:
-        """The cone cut by  row . x <= 0  (row: shape (d,), unit)."""
+        """The cone cut by  row . x <= 0  (row: shape (d,), unit). Raises ConeError for another row."""
+        native = compiled(len(row), len(self.rows) + 1)
+        if native is not None:
+            seen = (self.zero_max, self.nonzero_min)
+            forms = native.add_row(self.rows, self.lines, self.rays, self.incidence, self.ambient, self.zero, seen, row)
+            return _from_forms(np.vstack([self.rows, row]), self.zero, *forms)
+        require_unit_rows(row[None, :])
         if len(self.lines):
             along_lines = self.lines @ row
             length = float(np.linalg.norm(along_lines))
@@ -139,6 +147,13 @@ class DoubleDescription:
         return np.vstack(found) if found else np.zeros((0, 2), dtype=int)
 
 
+def _from_forms(
+    rows: Rows, zero: float, lines: Rows, rays: Rows, incidence: Incidence, ambient: int, zero_max: float, least: float
+) -> DoubleDescription:
+    """What the compiled kernel returns."""
+    return DoubleDescription(rows, lines, rays, incidence, zero, ambient, zero_max, least)
+
+
 def _orthonormal_rest(lines: Float[np.ndarray, "l d"], direction: Float[np.ndarray, " l"]) -> Rows:
     """Orthonormal basis of the part of span(lines) orthogonal to ``direction`` (given in the lines' coordinates)."""
     return singular_directions(direction[None, :])[1][1:] @ lines
@@ -151,11 +166,17 @@ def double_description(rows: Rows, equalities: Rows, zero: float, max_rays: int 
     result's ``rows`` and ``incidence`` are in the caller's order.
 
     Args:
-        rows: shape (m, d), unit.  equalities: shape (e, d), unit.  zero: relative size of a zero.
+        rows: shape (m, d), unit (or zero).  equalities: shape (e, d), likewise.  zero: relative size of a zero.
 
     Raises:
-        ConeError: more than ``max_rays`` extreme rays at some step.
+        ConeError: more than ``max_rays`` extreme rays at some step; rows that are not unit, not finite.
     """
+    native = compiled(rows.shape[1], len(rows))
+    if native is not None:
+        return _from_forms(rows, zero, *native.double_description(rows, equalities, zero, max_rays))
+    require_tolerance(zero)
+    require_unit_rows(rows)
+    require_unit_rows(equalities)
     state = DoubleDescription.whole_space(rows.shape[1], zero)
     for equality in equalities:
         along = state.lines @ equality
@@ -191,7 +212,7 @@ def double_description(rows: Rows, equalities: Rows, zero: float, max_rays: int 
 
 def _polish(state: DoubleDescription, equalities: Rows) -> Rows:
     """The rays once more as null vectors of their active rows, which takes out what the steps have accumulated."""
-    if not len(state.rays):
+    if not len(state.rays) or state.rays.shape[1] == 1:
         return state.rays
     fixed = np.vstack([state.lines, equalities])
     stack = np.zeros((len(state.rays), len(state.rows) + len(fixed), state.rows.shape[1]))

@@ -9,6 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from fixture_design.arrays import Rows, Vector, Weights
+from fixture_design.cones.kernel.checks import require_finite
+from fixture_design.cones.kernel.choice import compiled
+from fixture_design.errors import ConeError
 
 #: The hull is taken to reach the origin when the nearest point is closer than this to it, relative to the rows [-].
 _ARRIVED = 4e-16
@@ -24,7 +27,16 @@ def minimum_norm_point(rows: Rows) -> tuple[Vector, Weights]:
 
     Returns:
         x with shape (d,), w with shape (m,); at most d + 1 weights are positive.
+
+    Raises:
+        ConeError: no rows, or rows that are not finite.
     """
+    native = compiled(rows.shape[1])
+    if native is not None:
+        return native.minimum_norm_point(rows)
+    if not len(rows):
+        raise ConeError("no rows, so no nearest point")
+    require_finite(rows)
     count = len(rows)
     size = float(np.sqrt(np.max(np.einsum("ij,ij->i", rows, rows))))
     corral = [int(np.argmin(np.einsum("ij,ij->i", rows, rows)))]

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fixture_design.cones.kernel.checks import require_finite
+from fixture_design.cones.kernel.choice import compiled
+
 #: A column enters only if it points along the residual by this much, relative to both [-].
 _IMPROVES = 1e-13
 #: Unknowns below this, relative to the largest, have been driven to zero [-].
@@ -22,7 +25,15 @@ def nonnegative_least_squares(matrix: np.ndarray, target: np.ndarray) -> np.ndar
 
     Returns:
         x, shape (k,).
+
+    Raises:
+        ConeError: entries that are not finite.
     """
+    native = compiled(len(matrix))
+    if native is not None:
+        return native.nonnegative_least_squares(matrix.T, target)
+    require_finite(matrix)
+    require_finite(target)
     columns = matrix.shape[1]
     solution = np.zeros(columns)
     passive = np.zeros(columns, dtype=bool)

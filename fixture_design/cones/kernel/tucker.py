@@ -23,6 +23,8 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Mask, Rows, Vector, Weights
+from fixture_design.cones.kernel.checks import require_tolerance, require_unit_rows
+from fixture_design.cones.kernel.choice import compiled
 from fixture_design.cones.kernel.directions import singular_directions
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
 
@@ -68,9 +70,17 @@ def tucker_partition(rows: Rows, zero: float) -> TuckerPartition:
     """Split the rows of D into balanced and leaving ones.
 
     Args:
-        rows: shape (m, d), unit rows (no zero rows), finite; m = 0 is the unconstrained system.
+        rows: shape (m, d), unit rows, finite; m = 0 is the unconstrained system. A zero row counts as balanced.
         zero: numbers up to this are zeros; the rows are unit, so it is relative.
+
+    Raises:
+        ConeError: rows that are not unit, not finite.
     """
+    native = compiled(rows.shape[1])
+    if native is not None:
+        return TuckerPartition(*native.tucker_partition(rows, zero))
+    require_tolerance(zero)
+    require_unit_rows(rows)
     count, dimension = rows.shape
     balanced = np.zeros(count, dtype=bool)
     weights = np.zeros(count)
