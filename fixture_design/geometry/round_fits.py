@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from fixture_design.arrays import Point, Vector
+from fixture_design.arrays import Point, Vector, cross_products
 from fixture_design.contacts import tangents
 from fixture_design.geometry.shapes import Directions, FacetVectors, Vector3
 from fixture_design.geometry.smooth_surface import RoundKind, RoundShape
@@ -93,8 +93,8 @@ def jacobian(shape: RoundShape, points: Directions) -> Float[np.ndarray, "n k"]:
     Moving or turning the shape is moving the points the other way, and an offset grows along its direction.
     """
     away, out = points - shape.point, shape.directions(points)
-    tilts = [np.cross(shape.axis, tangent) for tangent in tangents(shape.axis)]
-    columns = [*(-out.T), *(-np.einsum("ij,ij->i", out, np.cross(tilt, away)) for tilt in tilts)]
+    tilts = [cross_products(shape.axis, tangent) for tangent in tangents(shape.axis)]
+    columns = [*(-out.T), *(-np.einsum("ij,ij->i", out, cross_products(tilt, away)) for tilt in tilts)]
     along = away @ shape.axis
     across = away - np.outer(along, shape.axis)
     lengths = np.linalg.norm(across, axis=1)
@@ -194,13 +194,13 @@ def _cone(patch: Patch) -> RoundShape | None:
 
 def _torus(patch: Patch) -> RoundShape | None:
     """All normals meet the axis: m . a + n . (a's moment) = 0, with m = x X n; then a circle in the half plane."""
-    rows = np.hstack([np.cross(patch.middles, patch.normals), patch.normals])
+    rows = np.hstack([cross_products(patch.middles, patch.normals), patch.normals])
     line = np.linalg.svd(rows)[2][-1]
     length = float(np.linalg.norm(line[:3]))
     if length < _NO_SAY:
         return None
     axis, moment = line[:3] / length, line[3:] / length
-    point = np.cross(axis, moment)
+    point = cross_products(axis, moment)
     away = patch.points - point
     along = away @ axis
     across = np.linalg.norm(away - np.outer(along, axis), axis=1)
