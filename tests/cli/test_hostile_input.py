@@ -163,7 +163,10 @@ TRIANGLE = "space: planar\npart: {polygon: [[0, 0], [1e300, 0], [0, 1e300]]}\n"
         (ONE.replace("Q1", "''"), "contacts[0].name"),
         (ONE.replace("Q1", "'\u202eQ1'"), "do not print"),
         (ONE.replace("[0, 0, 0]", "[1e300, 0, 0]"), "line 4, contacts[0]: contact 'Q1': the point must be"),
-        (ONE.replace("[0, 0, 1]", "[0, 0, 1], friction: 1e300"), "line 4, contacts[0]: contact 'Q1': friction must"),
+        (
+            ONE.replace("[0, 0, 1]", "[0, 0, 1], friction: 1e300"),
+            "line 4, contacts[0].friction: 'friction' is out of range; found 1e+300; expected a number <= 1000",
+        ),
         (
             HEAD + TRIANGLE + "elements: [{name: L, role: locator, at: [1, 0]}]\n",
             "line 3, part.polygon: the polygon of",
