@@ -15,7 +15,7 @@ from jaxtyping import Float
 from fixture_design.arrays import Point, Vector, cross_products
 from fixture_design.contacts import tangents
 from fixture_design.geometry.shapes import Directions, FacetVectors, Vector3
-from fixture_design.geometry.smooth_surface import RoundKind, RoundShape
+from fixture_design.geometry.smooth_surface import RoundKind, RoundShape, SeenFromAxis
 
 #: How far off points of size one may still be before each step of Gauss-Newton, and the step that is none [-].
 _OFF_AFTER_STEPS, _CONVERGED = (0.2, 0.1, 3e-2, 1e-2, 1e-3, 1e-3, 1e-3, 1e-3), 1e-11
@@ -75,10 +75,11 @@ def refined(shape: RoundShape, points: Directions) -> RoundShape | None:
     A guess of the right kind is near; what is still off after a few steps is of another kind.
     """
     for limit in _OFF_AFTER_STEPS:
-        offsets = shape.offsets(points)
+        seen = shape.seen(points)
+        offsets = shape.offsets_at(seen)
         if np.abs(offsets).max() > limit:
             return None
-        step = np.linalg.lstsq(jacobian(shape, points), -offsets, rcond=_NO_SAY)[0]
+        step = np.linalg.lstsq(jacobian(shape, seen), -offsets, rcond=_NO_SAY)[0]
         shape = _moved(shape, step)
         if not _sensible(shape):
             return None
@@ -87,24 +88,24 @@ def refined(shape: RoundShape, points: Directions) -> RoundShape | None:
     return shape
 
 
-def jacobian(shape: RoundShape, points: Directions) -> Float[np.ndarray, "n k"]:
-    """Derivatives of the points' offsets by the shape's parameters: point, two tilts of the axis, radius, ring.
+def jacobian(shape: RoundShape, seen: SeenFromAxis) -> Float[np.ndarray, "n k"]:
+    """Derivatives of points' offsets by the shape's parameters: point, two tilts of the axis, radius, ring.
 
     Moving or turning the shape is moving the points the other way, and an offset grows along its direction.
     """
-    away, out = points - shape.point, shape.directions(points)
-    tilts = [cross_products(shape.axis, tangent) for tangent in tangents(shape.axis)]
-    columns = [*(-out.T), *(-np.einsum("ij,ij->i", out, cross_products(tilt, away)) for tilt in tilts)]
-    along = away @ shape.axis
-    across = away - np.outer(along, shape.axis)
-    lengths = np.linalg.norm(across, axis=1)
+    out = shape.directions_at(seen)
+    rows = np.empty((len(out), 7 if shape.kind == "torus" else 6))
+    rows[:, :3] = -out
+    # to tilt towards one tangent is to turn about the other, and out . (turn X away) = (away X out) . turn
+    first, second = tangents(shape.axis)
+    rows[:, 3:5] = -cross_products(seen.away, out) @ np.column_stack([second, -first])
     if shape.kind == "cone":
-        columns.append(-lengths * np.sin(shape.radius) - along * np.cos(shape.radius))
+        rows[:, 5] = -seen.across * np.sin(shape.radius) - seen.along * np.cos(shape.radius)
     else:
-        columns.append(-np.ones(len(points)))
+        rows[:, 5] = -1.0
     if shape.kind == "torus":
-        columns.append(-np.einsum("ij,ij->i", out, across) / np.maximum(lengths, _TINY))
-    return np.column_stack(columns)
+        rows[:, 6] = -np.einsum("ij,ij->i", out, seen.outward) / np.maximum(seen.across, _TINY)
+    return rows
 
 
 def normal_error(
@@ -123,7 +124,7 @@ def normal_error(
     center, size = points.mean(axis=0), float(np.linalg.norm(np.ptp(points, axis=0)))
     radius = shape.radius if shape.kind == "cone" else shape.radius / size
     unit = RoundShape(shape.kind, (shape.point - center) / size, shape.axis, radius, shape.ring / size)
-    rows = jacobian(unit, (points - center) / size)
+    rows = jacobian(unit, unit.seen((points - center) / size))
     if shape.kind == "cone" and (shape.reaches(points) <= _AT_APEX * max(off, noise)).any():
         # a vertex at the apex is there in all three directions, though its distance from the surface has no slope
         rows = np.vstack([rows, np.eye(3, 6)])

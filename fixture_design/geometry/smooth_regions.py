@@ -195,6 +195,8 @@ class _Search:
         best: Region | None = None
         for patch, kinds in self._patches(seed):
             for kind in kinds:
+                if best is not None and kind == best[0].kind and set(patch).issubset(best[1]):
+                    continue  # it would grow to the same
                 region = self._region(kind, patch)
                 if region is not None and (best is None or len(region[1]) > len(best[1])):
                     best = region
@@ -247,16 +249,22 @@ class _Search:
 
     def merge(self) -> None:
         """Make one of surfaces that are one: a slot cuts a bore in two, and the halves have no facet in common."""
-        kept: list[Region] = []
+        kept: list[tuple[Region, Directions]] = []
         for region in self.found:
-            for index, other in enumerate(kept):
-                one = self._both(other, region) if self._alike(other[0], region[0]) else None
-                if one is not None:
-                    kept[index] = one
-                    break
+            points = self._points_on(*region)
+            for index, (other, others) in enumerate(kept):
+                if self._alike(other[0], region[0]) and self._near(other[0], points):
+                    both = self._both(other, region, np.vstack([others, points]))
+                    if both is not None:
+                        kept[index] = both, self._points_on(*both)
+                        break
             else:
-                kept.append(region)
-        self.found = kept
+                kept.append((region, points))
+        self.found = [region for region, _ in kept]
+
+    def _near(self, shape: RoundShape, points: Directions) -> bool:
+        """Whether the corners of one surface are near enough to another to try both as one."""
+        return bool(np.abs(shape.offsets(points)).max() <= _SAME * self.tolerance)
 
     def _alike(self, one: RoundShape, other: RoundShape) -> bool:
         """Whether two shapes may be one, by kind, size and direction: cheap, since all pairs are asked."""
@@ -265,10 +273,9 @@ class _Search:
             return False
         return one.kind == "sphere" or bool(abs(one.axis @ other.axis) > np.cos(_STEP / 10))
 
-    def _both(self, one: Region, other: Region) -> Region | None:
-        """One surface with the facets of two, if their corners are on both and they have the material on one side."""
-        points = np.vstack([self._points_on(*one), self._points_on(*other)])
-        if np.abs(one[0].offsets(points)).max() > _SAME * self.tolerance or self._hollow(*one) != self._hollow(*other):
+    def _both(self, one: Region, other: Region, points: Directions) -> Region | None:
+        """One surface with the facets of two, if all corners are on it and they have the material on one side."""
+        if self._hollow(*one) != self._hollow(*other):
             return None
         members = sorted(one[1] + other[1])
         shape = self._fit(one[0].kind, members, points)

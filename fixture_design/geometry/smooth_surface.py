@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -16,6 +16,22 @@ RoundKind = Literal["cylinder", "cone", "sphere", "torus"]
 
 #: A point this near to the axis or centre, relative to the points' distances from there, has no normal [-].
 _NO_NORMAL = 1e-9
+
+
+class SeenFromAxis(NamedTuple):
+    """Points as an axis sees them.
+
+    Attributes:
+        away: from the point of the axis, shape (n, 3) [m].
+        along: how far along it [m].
+        outward: what is square to it, shape (n, 3) [m].
+        across: its length: how far from the axis [m].
+    """
+
+    away: Directions
+    along: PerPoint
+    outward: Directions
+    across: PerPoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,49 +54,54 @@ class RoundShape:
 
     def offsets(self, points: Directions) -> PerPoint:
         """Distances of points, shape (n, 3), from the surface, positive away from its axis or centre [m]."""
-        along, outward = self._split(points)
-        across = np.linalg.norm(outward, axis=1)
-        match self.kind:
-            case "cylinder":
-                return across - self.radius
-            case "cone":
-                return across * np.cos(self.radius) - along * np.sin(self.radius)
-            case "sphere":
-                return np.hypot(across, along) - self.radius
-            case "torus":
-                return np.hypot(across - self.ring, along) - self.radius
+        return self.offsets_at(self.seen(points))
 
     def directions(self, points: Directions) -> Directions:
         """Unit normals at points near the surface, away from its axis or centre, shape (n, 3).
 
         Zero at points on the axis, or at the centre of a sphere: there is none.
         """
-        along, outward = self._split(points)
-        across = np.linalg.norm(outward, axis=1)
-        steps = across[:, None]
-        match self.kind:
-            case "cylinder":
-                raw = outward
-            case "cone":
-                raw = outward * np.cos(self.radius) - steps * np.sin(self.radius) * self.axis
-            case "sphere":
-                raw = points - self.point
-            case "torus":
-                raw = steps * (points - self.point) - outward * self.ring
-        lengths = np.linalg.norm(raw, axis=1, keepdims=True)
-        none = lengths <= _NO_NORMAL * np.hypot(across, along).max(initial=0.0)
-        return np.where(none, 0.0, raw / np.where(none, 1.0, lengths))
+        return self.directions_at(self.seen(points))
 
     def reaches(self, points: Directions) -> PerPoint:
         """Distances of points from the axis, of a sphere from the centre [m]."""
-        along, outward = self._split(points)
-        return np.hypot(np.linalg.norm(outward, axis=1), along if self.kind == "sphere" else 0.0)
+        seen = self.seen(points)
+        return np.hypot(seen.across, seen.along if self.kind == "sphere" else 0.0)
 
-    def _split(self, points: Directions) -> tuple[PerPoint, Directions]:
-        """How far along the axis, and the part of each point that is square to it."""
+    def seen(self, points: Directions) -> SeenFromAxis:
+        """Points as the axis sees them: once for all that is asked of the same points."""
         away = points - self.point
         along = away @ self.axis
-        return along, away - np.outer(along, self.axis)
+        outward = away - along[:, None] * self.axis
+        return SeenFromAxis(away, along, outward, np.sqrt(np.einsum("ij,ij->i", outward, outward)))
+
+    def offsets_at(self, seen: SeenFromAxis) -> PerPoint:
+        """``offsets`` of points that were seen."""
+        match self.kind:
+            case "cylinder":
+                return seen.across - self.radius
+            case "cone":
+                return seen.across * np.cos(self.radius) - seen.along * np.sin(self.radius)
+            case "sphere":
+                return np.hypot(seen.across, seen.along) - self.radius
+            case "torus":
+                return np.hypot(seen.across - self.ring, seen.along) - self.radius
+
+    def directions_at(self, seen: SeenFromAxis) -> Directions:
+        """``directions`` at points that were seen."""
+        steps = seen.across[:, None]
+        match self.kind:
+            case "cylinder":
+                raw = seen.outward
+            case "cone":
+                raw = seen.outward * np.cos(self.radius) - steps * np.sin(self.radius) * self.axis
+            case "sphere":
+                raw = seen.away
+            case "torus":
+                raw = steps * seen.away - seen.outward * self.ring
+        lengths = np.sqrt(np.einsum("ij,ij->i", raw, raw))[:, None]
+        none = lengths <= _NO_NORMAL * np.hypot(seen.across, seen.along).max(initial=0.0)
+        return np.where(none, 0.0, raw / np.where(none, 1.0, lengths))
 
 
 @dataclass(frozen=True, eq=False)

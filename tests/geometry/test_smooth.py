@@ -10,6 +10,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
+from fixture_design.contacts import tangents
 from fixture_design.geometry import PartGeometry, load_part
 from fixture_design.geometry.round_fits import jacobian, normal_error
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
@@ -136,7 +137,7 @@ def test_derivatives_of_offsets(kind: str) -> None:
     rng = np.random.default_rng(2)
     shape = RoundShape(kind, rng.normal(size=3), unit(rng.normal(size=3)), 0.4, 2.0 * (kind == "torus"))  # type: ignore[arg-type]
     points = rng.normal(size=(20, 3))
-    given = jacobian(shape, points)
+    given = jacobian(shape, shape.seen(points))
     for axis in range(3):
         step = 1e-6 * np.eye(3)[axis]
         ahead = RoundShape(shape.kind, shape.point + step, shape.axis, shape.radius, shape.ring).offsets(points)
@@ -145,6 +146,13 @@ def test_derivatives_of_offsets(kind: str) -> None:
     wider = RoundShape(shape.kind, shape.point, shape.axis, shape.radius + 1e-6, shape.ring).offsets(points)
     narrower = RoundShape(shape.kind, shape.point, shape.axis, shape.radius - 1e-6, shape.ring).offsets(points)
     np.testing.assert_allclose(given[:, 5], (wider - narrower) / 2e-6, atol=1e-8)
+    for column, tangent in enumerate(tangents(shape.axis), start=3):
+        tilted = [unit(shape.axis + step * tangent) for step in (1e-6, -1e-6)]
+        ahead, behind = (replace(shape, axis=axis).offsets(points) for axis in tilted)
+        np.testing.assert_allclose(given[:, column], (ahead - behind) / 2e-6, atol=1e-8)
+    if kind == "torus":
+        wider, narrower = (replace(shape, ring=2.0 + step).offsets(points) for step in (1e-6, -1e-6))
+        np.testing.assert_allclose(given[:, 6], (wider - narrower) / 2e-6, atol=1e-8)
 
 
 @pytest.mark.parametrize("kind", ["cylinder", "cone", "sphere", "torus"])
