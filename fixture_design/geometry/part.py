@@ -30,7 +30,7 @@ from fixture_design.geometry.smooth_regions import Region, fit_tolerance, may_be
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
 from fixture_design.geometry.turned import TurnedPiece, coarse_errors, turned_pieces
 from fixture_design.geometry.winding import shells, winding_numbers
-from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS
+from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS, ROUGH_RING
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +138,14 @@ class PartGeometry:
             return ()
         noise = max(float(self.rounding.max()), self._facets.noise)
         tolerance, size = fit_tolerance(self.vertices, noise), part_size(self.vertices)
-        taken = sorted({int(facet) for _, members in self._given_regions for facet in members})
         mesh = (self.vertices, self.triangles, self.facets, self.facet_of_triangle)
-        return tuple(turned_pieces(*mesh, taken, noise, tolerance, size))
+        taken = {int(facet) for _, members in self._given_regions for facet in members}
+        found: list[TurnedPiece] = []
+        for allowed in (tolerance, ROUGH_RING * size):
+            if allowed >= tolerance:
+                found += turned_pieces(*mesh, sorted(taken), noise, allowed, size, len(found))
+                taken |= {facet for piece in found for facet in piece.facets}
+        return tuple(found)
 
     @cached_property
     def _turned_facets(self) -> frozenset[int]:

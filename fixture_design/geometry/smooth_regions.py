@@ -82,14 +82,16 @@ def smooth_surfaces(
     for piece in turned:
         search.keep_middles_on(piece, triangles)
     bands = [piece for piece in turned if piece.smooth and piece.profile_error]
+    not_fitted = []
     search.free -= {facet for piece in turned if not piece.is_plane or piece.profile_error for facet in piece.facets}
     if look:
         for piece in turned:
-            if piece.smooth and not piece.profile_error and not piece.is_plane:
-                search.try_turned(piece)
+            if piece.smooth and not piece.profile_error and not piece.is_plane and not search.try_turned(piece):
+                not_fitted.append(piece)
         for seed in search.seeds():
             search.try_seed(seed)
         search.merge()
+        bands += [piece for unfit in not_fitted if (piece := search.left_of(unfit)) is not None]
     fitted = [search.surface(region, known=False) for region in search.found]
     known = [search.surface(region, known=True) for region in given]
     found = [*known, *(surface for surface in fitted if surface.normal_error <= _VAGUE)]
@@ -217,20 +219,40 @@ class _Search:
                 areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
                 self.middles[facet] = corners[np.argmax(areas)].mean(axis=0)
 
-    def try_turned(self, piece: TurnedPiece) -> None:
-        """Fit a surface that rings of vertices have shown, and grow it over facets that other features cut."""
-        points = self._points(piece.facets)
-        shape = refitted(piece.shape, points)
-        fewest, members = _FEWEST[piece.shape.kind], set(piece.facets)
-        enough = len(members) >= fewest[0] and len(points) >= fewest[1]
-        if shape is None or not enough or np.abs(shape.offsets(points)).max() > self.tolerance:
+    def try_turned(self, piece: TurnedPiece) -> bool:
+        """Fit a surface that rings of vertices have shown, and grow it over facets that other features cut.
+
+        Returns:
+            Whether it could be; if not, its facets are free.
+        """
+        points, members = self._points(piece.facets), set(piece.facets)
+        shape = refitted(piece.shape, points) if self._enough(piece) else None
+        if shape is None or np.abs(shape.offsets(points)).max() > self.tolerance:
             self.free |= members & self.candidates
-            return
+            return False
         if any(other in self.free for facet in members for other in self.smooth[facet]):
             self.free |= members
             members |= set(self._grown(shape, max(piece.facets, key=lambda facet: (self.areas[facet], facet))))
         self.found.append((_one_way(shape), sorted(members)))
         self.free -= members
+        return True
+
+    def left_of(self, piece: TurnedPiece) -> TurnedPiece | None:
+        """What no surface has taken of a piece that could not be fitted: it is turned all the same.
+
+        Its profile is what the rings say, as well as they say it.
+        """
+        taken = {facet for _, members in self.found for facet in members}
+        left = [facet for facet in piece.facets if facet not in taken]
+        if not left or not self._enough(piece):
+            return None
+        off = max(float(np.abs(piece.shape.offsets(self._points(left))).max()), self.tolerance)
+        return replace(piece, facets=left, profile_error=2 * off / float(self.widths[left].min()))
+
+    def _enough(self, piece: TurnedPiece) -> bool:
+        """Whether a piece has so many facets and vertices that it is no accident that they fit."""
+        facets, points = _FEWEST[piece.shape.kind]
+        return len(piece.facets) >= facets and len(self._points(piece.facets)) >= points
 
     def band(self, piece: TurnedPiece) -> SmoothSurface:
         """The surface through two rings of a profile that is not known, without a name yet."""

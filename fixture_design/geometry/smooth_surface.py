@@ -177,10 +177,11 @@ class SmoothSurface:
     def slips(self) -> Float[np.ndarray, "k 6"]:
         """The motions [v; w] about P's origin that move the surface along itself: one a row, 1 to 3 of them.
 
-        Turning about the axis; for cylinders also moving along it; for spheres turning any way about the centre.
+        Turning about the axis; for cylinders also moving along it; for spheres turning any way about the centre. Bands
+        of a profile that is not known only turn.
         """
-        turns = np.eye(3) if self.kind == "sphere" else self.axis[None]
+        turns = np.eye(3) if self.kind == "sphere" and not self.is_band else self.axis[None]
         rows = np.hstack([-np.cross(turns, self.point), turns])
-        if self.kind == "cylinder":
+        if self.kind == "cylinder" and not self.is_band:
             rows = np.vstack([rows, np.concatenate([self.axis, np.zeros(3)])])
         return rows

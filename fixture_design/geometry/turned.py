@@ -86,6 +86,7 @@ def turned_pieces(
     noise: float,
     tolerance: float,
     size: float,
+    first: int = 0,
 ) -> Iterator[TurnedPiece]:
     """The pieces of all surfaces of revolution that have rings of vertices; each facet is of one at most.
 
@@ -93,6 +94,7 @@ def turned_pieces(
         facets: of the part.  facet_of_triangle: which of them each triangle is of, shape (t,).  taken: facets that are
             of other surfaces.
         noise: how well vertices are known [m].  tolerance: how far they may be off a ring [m].  size: of the part [m].
+        first: number of the first axis.
     """
     normals = area_vectors(vertices, triangles)
     counts = np.bincount(facet_of_triangle)
@@ -102,7 +104,7 @@ def turned_pieces(
     at_border = np.zeros(len(vertices), dtype=bool)
     at_border[edges] = True
     at = _Incidence.of(triangles, len(vertices))
-    for number, axis in enumerate(axes_of(vertices, edges, tolerance, size)):
+    for number, axis in enumerate(axes_of(vertices, edges, tolerance, size), start=first):
         touched = np.unique(facet_of_triangle[at.triangles(axis.vertices)])
         touched = touched[free.facet[touched]]
         if not len(touched):

@@ -94,7 +94,7 @@ def pieces_of(rings: Rings, bands: list[Band], tolerance: float, beyond: Beyond)
         errors = _errors(_measures(lines, closed, places, tangent, beyond))
         for index, line in enumerate(lines):
             if index not in taken:
-                shape = _line_shape(rings, places[line.rings[0]], places[line.rings[-1]])
+                shape = _line_shape(rings, places[line.rings[0]], places[line.rings[-1]], tolerance)
                 found.append(Piece(line.bands, shape, errors.get(index, 0.0), index in errors))
     return found
 
@@ -280,11 +280,11 @@ def _arc_shape(rings: Rings, center: Float[np.ndarray, 2], place: Float[np.ndarr
     return RoundShape("torus", point, axis.direction, radius, float(center[0]))
 
 
-def _line_shape(rings: Rings, first: Float[np.ndarray, 2], last: Float[np.ndarray, 2]) -> RoundShape:
+def _line_shape(rings: Rings, first: Float[np.ndarray, 2], last: Float[np.ndarray, 2], tolerance: float) -> RoundShape:
     """The cylinder or cone through two rings; a plane across the axis is a cone with a right angle."""
     axis, (out, rise) = rings.axis, (last - first).tolist()
-    if abs(out) <= _NO_SLOPE * abs(rise):
-        return RoundShape("cylinder", axis.point, axis.direction, float(first[0]))
+    if abs(out) <= min(max(_NO_SLOPE * abs(rise), 2 * tolerance), abs(rise)):
+        return RoundShape("cylinder", axis.point, axis.direction, float(first[0] + last[0]) / 2)
     apex = axis.point + (first[1] - first[0] * rise / out) * axis.direction
     sense = 1.0 if out * rise >= 0 else -1.0
     return RoundShape("cone", apex, sense * axis.direction, float(np.arctan2(abs(out), abs(rise))))

@@ -121,6 +121,32 @@ def test_the_axis_is_as_good_as_is_said(tmp_path: Path, noise: float) -> None:
             assert off_axis(band) <= band.axis_error <= 2e4 * noise
 
 
+@pytest.mark.parametrize("fold", ["alternating", "half turned"])
+@pytest.mark.parametrize("sections", [13, 24])
+def test_a_badly_measured_shaft_is_a_cylinder(tmp_path: Path, sections: int, fold: str) -> None:
+    """Two rings that are not quite equal are no cone with its apex far away."""
+    rng = np.random.default_rng(sections)
+    for _ in range(4):
+        vertices, triangles = placed(turned([[0, 0], [0.01, 0], [0.01, 0.012], [0, 0.012]], sections, fold))
+        shaken = vertices + 3e-7 * rng.uniform(-1, 1, vertices.shape)
+        (surface,) = loaded(tmp_path, (shaken, triangles)).smooth_surfaces
+        assert surface.kind == "cylinder"
+        assert off_axis(surface) <= surface.axis_error <= surface.normal_error <= 2e-3
+
+
+def test_a_band_of_an_unknown_profile_moves_along_itself_by_turning_only(tmp_path: Path) -> None:
+    """Also the one around a barrel's belly, whose two rings are equal: the cylinder through them is a chord."""
+    heights = np.linspace(-1, 1, 8)
+    profile = np.column_stack([0.006 + 0.004 * np.sqrt(1 - 0.7 * heights**2), 0.01 * heights]).tolist()
+    bands = [
+        surface for surface in body(tmp_path, [[0, -0.01], *profile, [0, 0.01]], 24).smooth_surfaces if surface.is_band
+    ]
+    assert "cylinder" in {band.kind for band in bands}
+    for band in bands:
+        (slip,) = band.slips()
+        assert np.linalg.norm(np.cross(slip[3:], TURN[:, 2])) < 1e-9
+
+
 def test_axes_of_two_turned_bodies_are_told_apart() -> None:
     """Rings on one line are one axis, those beside it another; the one with more vertices is first."""
     rings = []
