@@ -58,9 +58,6 @@ ROUGH_RING = 5e-5
 #: 1 m is no taper that anybody makes or measures. What is further off is taken as it is.
 SQUARED_ANGLE = 2e-6
 
-#: Surfaces of one axis or direction, known to within their normal errors, agree within so many of these [-].
-SLIP_ERRORS = 4.0
-
 #: Points that differ by less than this, relative to their coordinates, coincide and have no lever [-].
 COINCIDENT = 1e-12
 

@@ -37,12 +37,12 @@ def deterministic(restraint: Restraint) -> Finding:
         reason. The margin is the d-th singular value in the report's scale, smallest over the branches, 0 with fewer
         rows than d; None if there are more than MAX_BRANCHES branches.
     """
-    if restraint.slip is not None:
-        return _slips(restraint, restraint.slip)
     constraints, rule = restraint.constraints, None
     search = _RankSearch.of(constraints, restraint.tolerances)
     outcome = search.visit()
     if isinstance(outcome, _Deficient) and outcome.motion is None and constraints.errors.any():
+        if restraint.slip is not None:
+            return _slips(restraint, restraint.slip)
         still, rule = still_motion(restraint.contacts, restraint.tolerances), too_few_to_locate(restraint.contacts)
         if still is not None:
             outcome, rule = replace(outcome, motion=still), None

@@ -73,12 +73,10 @@ class Restraint:
     def closed(self) -> Settled:
         """Is every branch {o}? Asked once for form closure and accessibility."""
         settled = UnionQuestions(self.constraints, self.tolerances).closed()
-        if settled.truth is False or not self.constraints.errors.any():
+        if settled.truth is not None or not self.constraints.errors.any():
             return settled
         if self.slip is not None:
             return Settled(False, motion=self.slip, rule=Rule("common slip", ()))
-        if settled.truth:
-            return settled
         still, rule = still_motion(self.contacts, self.tolerances), too_few_to_close(self.contacts)
         if still is not None:
             return Settled(False, motion=still)

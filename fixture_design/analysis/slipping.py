@@ -1,13 +1,14 @@
 """Motions that move every touched surface along itself: a shaft's spin, a prism's slide, whatever touches there.
 
 A surface that a motion maps to itself goes on touching, at all of its points, whichever of them are touched: to first
-order no contact with it notices. If one motion does that to all surfaces, the contacts cannot close and cannot locate,
-and no error of the surfaces' directions changes that, as long as it is such errors that keep their own motions from
-agreeing to the last digit: two diameters of one shaft have one axis, though it was fitted twice. That is decided here,
-within the normals' stated errors and only while these are small.
+order no contact with it notices. If one motion does that to all surfaces, the contacts cannot close and cannot locate.
+Surfaces known to within an error share it only up to that: two diameters of one shaft have one axis, though it was
+fitted twice. Where all surfaces can share a motion within their stated errors, and the normals alone leave the answer
+open, they are taken to share it, since surfaces agree so well on purpose or not at all; and only while the errors are
+small. What the normals tell in spite of their errors is never overruled.
 
 A motion that slips along some surfaces and leaves the contacts on all others, by more than errors could take back, is
-as certain: a plate lifts off its rests along the bores of its pins. Such contacts do not close.
+taken alike: a plate lifts off its rests along the bores of its pins. Such contacts do not close.
 
 Source: N. Gelfand, L. J. Guibas, Shape segmentation using local slippage analysis, Symposium on Geometry Processing,
 2004.
@@ -22,7 +23,13 @@ import numpy as np
 from fixture_design.arrays import Rows, Vector
 from fixture_design.cones.kernel import minimum_norm_point
 from fixture_design.contacts import Contact, Scale, constraints_of, motion_scaled, scale_of
-from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT, SLIP_ERRORS, Tolerances
+from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT, Tolerances
+
+
+#: Weights up to so many normal errors may only make up for these [-].
+_MAKES_UP = 4.0
+#: Rounds in which the surfaces that a motion fits worst are given more say [-].
+_ROUNDS = 20
 
 
 def common_slip(contacts: Sequence[Contact], tolerances: Tolerances = DEFAULT) -> Vector | None:
@@ -50,7 +57,7 @@ def slip_or_leave(contacts: Sequence[Contact], tolerances: Tolerances = DEFAULT)
     lengths = np.linalg.norm(constraints.rows, axis=1)
     rows, errors = constraints.rows / lengths[:, None], constraints.errors / lengths
     # where normals that are off nearly balance, others make up for the rest of it with weights of that size
-    accidental = SLIP_ERRORS * min(float(errors.max()), COPLANAR_ANGLE)
+    accidental = _MAKES_UP * min(float(errors.max()), COPLANAR_ANGLE)
     kept: set[int] = set()
     while len(kept) < len(contacts):
         slipped = [contacts[index] for index in sorted(kept)]
@@ -74,16 +81,22 @@ def _slips_of(contacts: Sequence[Contact], scale: Scale, tolerances: Tolerances)
     if not known or max(contact.provenance.off_slip for contact in contacts) > COPLANAR_ANGLE:
         return none
     zero = tolerances.at_offset(scale.offset).zero
-    projectors, allowed = [], []
-    for contact in contacts:
-        for slips in contact.slips:
-            if not len(slips):
-                return none
-            projectors.append(off_slips(slips, scale))
-            allowed.append(slip_error(contact, scale) + zero)
-    motions = np.linalg.svd(np.vstack(projectors))[2]
-    off = np.array([np.linalg.norm(motions @ projector, axis=1) for projector in projectors])
-    return motions[(off <= np.array(allowed)[:, None]).all(axis=0)]
+    allowed = np.array([slip_error(contact, scale) + zero for contact in contacts for _ in contact.slips])
+    surfaces = [slips for contact in contacts for slips in contact.slips]
+    if not all(map(len, surfaces)):
+        return none
+    projectors = np.array([off_slips(slips, scale) for slips in surfaces]) / allowed[:, None, None]
+    say = np.ones(len(projectors))
+    for _ in range(_ROUNDS):
+        # Lawson's rounds: from the motion that fits best on average to the one whose worst fit is best
+        _, values, motions = np.linalg.svd((say[:, None, None] * projectors).reshape(-1, 6))
+        off = np.linalg.norm(motions @ projectors, axis=2)
+        within = (off <= 1.0).all(axis=0)
+        if within[-1] or values[-1] > np.linalg.norm(say):
+            break
+        say = np.sqrt(say**2 * off[:, -1])
+        say /= np.linalg.norm(say)
+    return motions[within]
 
 
 def off_slips(slips: Rows, scale: Scale) -> Rows:
@@ -97,4 +110,4 @@ def off_slips(slips: Rows, scale: Scale) -> Rows:
 def slip_error(contact: Contact, scale: Scale) -> float:
     """How far the error of a contact's surface may move its surface's own motions, at most [-]."""
     lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
-    return SLIP_ERRORS * contact.provenance.off_slip * float(np.hypot(1.0, lever))
+    return contact.provenance.off_slip * float(np.hypot(1.0, lever))

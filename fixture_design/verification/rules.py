@@ -13,7 +13,7 @@ import numpy as np
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, Scale, motion_scaled, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Counted, Rule, RuleName
-from fixture_design.tolerances import COPLANAR_ANGLE, SLIP_ERRORS, SUM_ROUNDING, WITNESS
+from fixture_design.tolerances import COPLANAR_ANGLE, SUM_ROUNDING, WITNESS
 
 #: Rules that confirm their motion themselves.
 SLIP_RULES = ("common slip", "slip or leave")
@@ -106,7 +106,7 @@ def _unit(motion: Vector | None, scale: Scale) -> Vector | None:
 def _slip_limit(contact: Contact, scale: Scale) -> float:
     """How far a contact's normal error may move its surface's own motions, and rounding [-]."""
     lever = float(np.linalg.norm(contact.point - scale.reference)) / scale.length
-    return SLIP_ERRORS * contact.provenance.off_slip * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
+    return contact.provenance.off_slip * float(np.hypot(1.0, lever)) + WITNESS * (1 + scale.offset)
 
 
 def _slip_fault(contact: Contact, unit: Vector, scale: Scale) -> str | None:

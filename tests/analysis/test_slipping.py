@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 
 from fixture_design.analysis import Restraint, deterministic, form_closure
-from fixture_design.contacts import Contact, Provenance
+from fixture_design.contacts import Contact, Provenance, scale_of
 from fixture_design.layout import Answer, Group, Motion
 from fixture_design.verification.checker import check_group
 from fixture_design.verification.verify import group_verdict
@@ -94,6 +95,48 @@ def test_a_motion_that_is_no_slip_is_refused() -> None:
     for motion in (np.array([1.0, 0, 0, 0, 0, 0]), np.array([0, 0, 0, 0, 1.0, 0]), np.zeros(6), np.zeros(3)):
         forged = replace(found, evidence=replace(found.evidence, motion=motion))
         assert check_group(replace(verdict, findings={"form_closure": forged}), restraint.contacts) != []
+
+
+def tilted_prism(tilt: float, error: float) -> list[Contact]:
+    """32 contacts on the four long sides of a prism along x, eight a side, half of them tilted towards each end."""
+    contacts = []
+    for base in np.vstack([np.eye(3)[1:], -np.eye(3)[1:]]):
+        across = np.cross([1.0, 0.0, 0.0], base)
+        for sense, along, aside in product((1, -1), (1, -1), (0.8, -0.8)):
+            point, normal = base + along * np.eye(3)[0] + aside * across, base + sense * tilt * np.eye(3)[0]
+            plane = np.linalg.svd(normal[None])[2][1:]
+            slips = np.vstack([np.hstack([plane, np.zeros((2, 3))]), np.concatenate([np.cross(point, normal), normal])])
+            provenance = Provenance("fitted", error)
+            name = f"C{len(contacts)}"
+            contacts.append(Contact(name, "locator", point, ((normal,),), provenance=provenance, slips=(slips,)))
+    return contacts
+
+
+def test_surfaces_that_cannot_share_a_motion_do_not() -> None:
+    """Tilted by more than their errors, they close whatever the errors are: never answered by a slide."""
+    restraint = Restraint.of(tilted_prism(tilt=2e-5, error=1e-5))
+    assert restraint.slip is None
+    assert form_closure(restraint).answer is not Answer.NO
+    assert deterministic(restraint).answer is Answer.YES
+    far = Restraint.of(tilted_prism(tilt=4e-4, error=1e-5))
+    assert form_closure(far).answer is Answer.YES
+
+
+def test_surfaces_that_may_share_a_motion_do() -> None:
+    restraint = Restraint.of(tilted_prism(tilt=5e-6, error=1e-5))
+    assert form_closure(restraint).answer is deterministic(restraint).answer is Answer.NO
+    assert restraint.slip is not None
+    np.testing.assert_allclose(np.abs(restraint.slip), np.eye(6)[0], atol=1e-5)
+
+
+@pytest.mark.parametrize(("part", "shared"), [(0.5, False), (0.9, True)])
+def test_the_worst_surface_counts(part: float, shared: bool) -> None:
+    """Nine axes agree and one is 2e-8 m off: one line is within 9e-9 m of all, though not the one best on average."""
+    contacts = [on_shaft(0.5 + 0.9 * k, 0.003 * k, -1e-8 if k else 1e-8, 0.0) for k in range(10)]
+    spins = [replace(contact, slips=(contact.slips[0][:1],)) for contact in contacts]
+    provenance = Provenance("fitted", part * 1e-8 / scale_of(spins).length)
+    restraint = Restraint.of([replace(contact, provenance=provenance) for contact in spins])
+    assert (restraint.slip is not None) is shared
 
 
 def pinned_plate(error: float) -> list[Contact]:
