@@ -25,7 +25,6 @@ from fixture_design.cones.kernel import minimum_norm_point
 from fixture_design.contacts import Contact, Scale, constraints_of, motion_scaled, scale_of
 from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT, Tolerances
 
-
 #: Weights up to so many normal errors may only make up for these [-].
 _MAKES_UP = 4.0
 #: Rounds in which the surfaces that a motion fits worst are given more say [-].
