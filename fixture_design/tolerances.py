@@ -51,8 +51,8 @@ RING_EQUAL = 0.25
 ROUND_FIT = 1e-6
 
 #: How far off their circle the vertices of a ring may be where better ones do not tell how well they are known,
-#: relative to the part's size [-]: badly measured, or written with few digits.
-ROUGH_RING = 5e-5
+#: relative to the part's size [-], one after the other: written with few digits, measured, measured badly.
+ROUGH_RINGS = (5e-5, 5e-4)
 
 #: A facet this near to square to an axis of its part was meant to be [rad]. Exporters are that far off, and 2 um over
 #: 1 m is no taper that anybody makes or measures. What is further off is taken as it is.

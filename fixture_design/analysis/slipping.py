@@ -85,7 +85,7 @@ def _slips_of(contacts: Sequence[Contact], scale: Scale, tolerances: Tolerances)
     if not all(map(len, surfaces)):
         return none
     projectors = np.array([off_slips(slips, scale) for slips in surfaces]) / allowed[:, None, None]
-    say = np.ones(len(projectors))
+    say, motions, within = np.ones(len(projectors)), none, np.zeros(0, dtype=bool)
     for _ in range(_ROUNDS):
         # Lawson's rounds: from the motion that fits best on average to the one whose worst fit is best
         _, values, motions = np.linalg.svd((say[:, None, None] * projectors).reshape(-1, 6))

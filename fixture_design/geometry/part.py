@@ -30,7 +30,7 @@ from fixture_design.geometry.smooth_regions import Region, fit_tolerance, may_be
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
 from fixture_design.geometry.turned import TurnedPiece, coarse_errors, turned_pieces
 from fixture_design.geometry.winding import shells, winding_numbers
-from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS, ROUGH_RING
+from fixture_design.tolerances import MERGE_VERTICES, ON_EDGE_ROUNDINGS, ROUGH_RINGS
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +141,7 @@ class PartGeometry:
         mesh = (self.vertices, self.triangles, self.facets, self.facet_of_triangle)
         taken = {int(facet) for _, members in self._given_regions for facet in members}
         found: list[TurnedPiece] = []
-        for allowed in (tolerance, ROUGH_RING * size):
+        for allowed in (tolerance, *(rough * size for rough in ROUGH_RINGS)):
             if allowed >= tolerance:
                 found += turned_pieces(*mesh, sorted(taken), noise, allowed, size, len(found))
                 taken |= {facet for piece in found for facet in piece.facets}

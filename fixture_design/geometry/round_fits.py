@@ -26,8 +26,8 @@ _TINY = 1e-300
 _FREEDOMS: dict[RoundKind, int] = {"cylinder": 5, "cone": 6, "sphere": 4, "torus": 7}
 #: Points this many offsets from the axis of a cone are its apex [-].
 _AT_APEX = 10.0
-#: Offsets this many times the noise are no noise [-].
-_MORE_THAN_NOISE = 4.0
+#: Offsets this many times the noise are no noise [-]: three coordinates rounded at once make up to the root of three.
+_MORE_THAN_NOISE = 2.0
 #: Fits with a radius beyond so many times the points' size are planes [-].
 _FLAT = 50.0
 
@@ -114,7 +114,7 @@ def normal_error(
     """How far normals at some places of a fitted surface may be off [rad]; infinite if the points leave it open.
 
     The parameters' covariance from the fit, carried over to the normals. Where the points are off by no more than their
-    noise, by three standard deviations. Else the surface is not quite of this kind, all may be off one way, which
+    noise, by three standard deviations: a crown or taper that is lost in the noise is not told from none. Else the surface is not quite of this kind, all may be off one way, which
     the square root of their number allows for, and the surface may wave by as much from facet to facet.
 
     Args:

@@ -13,6 +13,7 @@ Triangles = Int[np.ndarray, "t 3"]
 TriangleVectors = Float[np.ndarray, "t 3"]
 PerTriangle = Float[np.ndarray, "t"]
 OfTriangle = Int[np.ndarray, "t"]
+VertexMask = Bool[np.ndarray, "v"]
 TriangleMask = Bool[np.ndarray, "t"]
 #: The three sides of each triangle as vertex numbers, side after side, and one index or selection a side.
 Sides = Int[np.ndarray, "s 2"]

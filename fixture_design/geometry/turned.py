@@ -15,9 +15,9 @@ from fixture_design.arrays import Indices
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.piece import area_vectors
 from fixture_design.geometry.planes import neighbours
-from fixture_design.geometry.shapes import EdgeEnds, OfTriangle, Triangles, Vertices
+from fixture_design.geometry.shapes import EdgeEnds, OfTriangle, Triangles, VertexMask, Vertices
 from fixture_design.geometry.smooth_surface import RoundShape
-from fixture_design.geometry.turned_axes import FEWEST_ON_RING, axes_of
+from fixture_design.geometry.turned_axes import FEWEST_ON_RING, Axis, axes_of
 from fixture_design.geometry.turned_bands import Band, Rings, bands_of
 from fixture_design.geometry.turned_profile import Piece, pieces_of
 from fixture_design.tolerances import SMOOTH_ANGLE
@@ -101,46 +101,16 @@ def turned_pieces(
     free = _Free(facet_of_triangle, counts, np.ones(len(counts), dtype=bool))
     free.facet[taken] = False
     edges = _borders(triangles, facet_of_triangle, len(vertices))
-    at_border = np.zeros(len(vertices), dtype=bool)
-    at_border[edges] = True
-    at = _Incidence.of(triangles, len(vertices))
+    mesh = _Mesh.of(vertices, triangles, facets, facet_of_triangle, edges)
     for number, axis in enumerate(axes_of(vertices, edges, tolerance, size), start=first):
-        touched = np.unique(facet_of_triangle[at.triangles(axis.vertices)])
-        touched = touched[free.facet[touched]]
-        if not len(touched):
+        found = _around(axis, mesh, free, tolerance)
+        if found is None:
             continue
-        near = np.sort(np.concatenate([facets[facet].triangles for facet in touched.tolist()]))
-        used = np.unique(triangles[near])
-        used = used[at_border[used]]
-        if len(used) < FEWEST_ON_RING:
-            continue
-        rings = Rings.about(axis, vertices, used, tolerance)
+        near, rings = found
         bands = bands_of(rings, triangles, near, normals)
-        beyond = _Beyond(rings, bands, triangles, facet_of_triangle, facets)
+        beyond = _Beyond(rings, bands, mesh)
         for piece in pieces_of(rings, bands, tolerance, beyond):
             yield from _of_piece(piece, bands, rings, free, vertices, noise, number)
-
-
-@dataclass(frozen=True, eq=False)
-class _Beyond:
-    """The facets beyond the ends of rows of bands."""
-
-    rings: Rings
-    bands: list[Band]
-    triangles: Triangles
-    of_triangle: OfTriangle
-    facets: Sequence[Facet]
-
-    def __call__(self, ring: int, band: int) -> tuple[float, float, bool] | None:
-        """Angle and width of a facet that meets a band smoothly at a ring, and whether it is a strip."""
-        members = set(self.of_triangle[self.bands[band].triangles].tolist())
-        for member in sorted(members):
-            for other, angle in self.facets[member].angles.items():
-                if other not in members and abs(angle) < SMOOTH_ANGLE:
-                    corners = np.unique(self.triangles[self.facets[other].triangles])
-                    if (self.rings.of_vertex[corners] == ring).sum() >= _AN_EDGE:
-                        return angle, self.facets[other].width, self.facets[other].provenance.kind == "approximate"
-        return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +129,78 @@ class _Incidence:
         """Those at some vertices."""
         rows = [self.triangle[self.start[v] : self.start[v + 1]] for v in vertices.tolist()]
         return np.unique(np.concatenate(rows))
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """A mesh in facets.
+
+    Attributes:
+        of_triangle: the facet that each triangle is of.  at_border: the vertices on edges between facets.
+        at: the triangles at each vertex.
+    """
+
+    vertices: Vertices
+    triangles: Triangles
+    facets: Sequence[Facet]
+    of_triangle: OfTriangle
+    at_border: VertexMask
+    at: _Incidence
+
+    @classmethod
+    def of(
+        cls, vertices: Vertices, triangles: Triangles, facets: Sequence[Facet], of_triangle: OfTriangle, edges: EdgeEnds
+    ) -> _Mesh:
+        at_border = np.zeros(len(vertices), dtype=bool)
+        at_border[edges] = True
+        return cls(vertices, triangles, facets, of_triangle, at_border, _Incidence.of(triangles, len(vertices)))
+
+
+def _around(axis: Axis, mesh: _Mesh, free: _Free, tolerance: float) -> tuple[Indices, Rings] | None:
+    """The triangles of free facets with corners on rings about an axis, and the rings; None if there are too few.
+
+    Rings may have more corners than those by which the axis was found.
+    """
+    on = axis.vertices
+    while True:
+        touched = np.unique(mesh.of_triangle[mesh.at.triangles(on)])
+        touched = touched[free.facet[touched]]
+        if not len(touched):
+            return None
+        near = np.sort(np.concatenate([mesh.facets[facet].triangles for facet in touched.tolist()]))
+        used = np.unique(mesh.triangles[near])
+        used = used[mesh.at_border[used]]
+        if len(used) < FEWEST_ON_RING:
+            return None
+        rings = Rings.about(axis, mesh.vertices, used, tolerance)
+        more = np.union1d(on, used[rings.of_vertex[used] >= 0])
+        if len(more) == len(on):
+            return near, rings
+        on = more
+
+
+@dataclass(frozen=True, eq=False)
+class _Beyond:
+    """The facets beyond the ends of rows of bands."""
+
+    rings: Rings
+    bands: list[Band]
+    mesh: _Mesh
+
+    def __call__(self, ring: int, band: int) -> tuple[float, float, bool] | None:
+        """Angle and width of a facet that meets a band smoothly at a ring, and whether it is a strip."""
+        members = set(self.mesh.of_triangle[self.bands[band].triangles].tolist())
+        for member in sorted(members):
+            for other, angle in self.mesh.facets[member].angles.items():
+                if other not in members and abs(angle) < SMOOTH_ANGLE:
+                    corners = np.unique(self.mesh.triangles[self.mesh.facets[other].triangles])
+                    if (self.rings.of_vertex[corners] == ring).sum() >= _AN_EDGE:
+                        return (
+                            angle,
+                            self.mesh.facets[other].width,
+                            self.mesh.facets[other].provenance.kind == "approximate",
+                        )
+        return None
 
 
 def coarse_errors(

@@ -29,6 +29,8 @@ _LEAST_TURN, _MOST_TURN, _UNEVEN = 0.03, RING_ANGLE + 0.02, 4.0
 _CLEAR = 10.0
 #: Triples are compared in cells of this size: of places relative to the part, of directions [-].
 _CELL, _DIRECTION_CELL = 5e-4, 4e-3
+#: Cells are at least so many tolerances wide: three neighbours say that much less about a circle than all do [-].
+_WITHIN_CELL = 20.0
 #: Rings that are off an axis by this many tolerances are tried on it [-].
 _NEAR = 20.0
 #: No direction that a part has on purpose: which way an axis counts as positive.
@@ -154,7 +156,9 @@ def _circles(vertices: Vertices, edges: EdgeEnds, tolerance: float, size: float)
     normals = square / np.sqrt(sizes)[:, None]
     normals *= np.where(normals @ _GENERIC < 0, -1.0, 1.0)[:, None]
     radii = np.linalg.norm(away, axis=1)
-    keys = np.column_stack([(b + away) / (_CELL * size), radii / (_CELL * size), normals / _DIRECTION_CELL])
+    rough = max(1.0, _WITHIN_CELL * tolerance / (_CELL * size))
+    cell, direction_cell = rough * _CELL * size, rough * _DIRECTION_CELL
+    keys = np.column_stack([(b + away) / cell, radii / cell, normals / direction_cell])
     seen: set[tuple[int, ...]] = set()
     # two grids, half a cell apart: what lies at a border of the one does not in the other
     for shift in (0.0, 0.5):

@@ -314,10 +314,11 @@ def _notice_fault(evidence: Singular, case: Case, nominal: bool) -> str | None:
         return "there is no finite motion"
     if not 0 <= evidence.rank < case.dimension:
         return f"the rank {evidence.rank} is not between 0 and {case.dimension - 1}"
-    for choice in evidence.choices:
-        taken = _as_choice(choice, case)
-        if isinstance(taken, str):
-            return taken
+    if len(evidence.choices) != 1:
+        return f"one branch has the motion, not {len(evidence.choices)}"
+    taken = _as_choice(evidence.choices[0], case)
+    if isinstance(taken, str):
+        return taken
     worst = max(
         min(max(_work(c, n, motion, case, False, nominal) for n in (normal, -normal)) for normal in clause)
         for c in case.contacts

@@ -68,6 +68,19 @@ def test_signs_of_float_rows_are_those_of_the_numbers_they_are(rng: np.random.Ge
         assert (sign == -1) == exact.separable([row for row in exactly if any(row)])
 
 
+@pytest.mark.parametrize("small", [5e-324, 1e-300, 1e-200, 1e-170, 1e-161, 1e-154, 1e-140, 1e-120])
+@pytest.mark.parametrize(
+    "rows",
+    [[[1.0], [-1.0]], [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]], [[1.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]],
+)
+def test_rows_whose_squares_underflow_count(rows: list[list[float]], small: float):
+    """They close without the first row's size mattering; without the first row they do not."""
+    rows = [[small * value for value in rows[0]], *rows[1:]]
+    signs = kernel.exact_closure_signs(np.array([*rows, *rows[1:]]), np.array([0, len(rows), 2 * len(rows) - 1]))
+    assert signs[0] == 1
+    assert signs[1] < 1
+
+
 def test_numbers_are_what_they_say():
     given_as = [["0.1", "0.3"], [Fraction(1, 10), Decimal("0.3")], [1, 3.0]]
     assert kernel.integer_rows(given_as, 2) == [(1, 3)] * 3

@@ -329,6 +329,9 @@ def test_a_short_rank_and_its_choice_are_possible_ones() -> None:
         assert "rank" in faults(forged(verdict, "deterministic", wrong))[0]
     wrong = replace(finding, evidence=replace(finding.evidence, choices=((("P9", 0, 0),),)))
     assert "no alternative" in faults(forged(verdict, "deterministic", wrong))[0]
+    for choices in ((), finding.evidence.choices * 2):
+        wrong = replace(finding, evidence=replace(finding.evidence, choices=choices))
+        assert "one branch" in faults(forged(verdict, "deterministic", wrong))[0]
 
 
 @pytest.mark.parametrize(

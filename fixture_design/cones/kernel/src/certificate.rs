@@ -1,14 +1,15 @@
 //! Bounds on s = min over |u| = 1 of max_i d_i . u that hold for the rows as the floats they are, rounding and all.
 //!
-//! s > 0 says that the rows close, s < 0 that a motion leaves them all; zero rows say nothing and are left out. The float filter of everything exact here is
-//! this: a bound that excludes zero is a proof; where neither does, rational arithmetic decides (`exact`).
+//! s > 0 says that the rows close, s < 0 that a motion leaves them all; zero rows say nothing and are left out. The
+//! float filter of everything exact here is this: a bound that excludes zero is a proof; where neither does, rational
+//! arithmetic decides (`exact`).
 //!
 //! Notation: u = 2^-53, g(n) = n u / (1 - n u). A sum of n products in any order errs by at most g(n) sum |x_i y_i|
 //! (N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1); fused multiply-add errs by no more.
 //!
 //! **A motion** v proves s <= max_i d_i . v / |v|. Computed d_i . v errs by at most g(D) |d_i| |v|, since
 //! sum |d_ik v_k| <= |d_i| |v|. The bound returned adds (D + 8) u |d_i|, which pays for the division and for |v|, |d_i|
-//! themselves too.
+//! themselves too. Rows so short that their squares underflow have no such bound.
 //!
 //! **Weights** w >= 0, W = sum w_i > 0, prove with E = diag(w) D, r = D^T w:
 //!
@@ -40,6 +41,9 @@ const SAFE: f64 = 1.1;
 /// Smallest eigenvalue that underflow cannot have made.
 const FAR_FROM_UNDERFLOW: f64 = 1e-250;
 
+/// Length of a vector whose squares may have lost digits to underflow, or be none.
+const SQUARES_UNDERFLOW: f64 = 1e-140;
+
 /// An upper bound on s: the largest d_i . v / |v| with its rounding; v need not be unit.
 #[inline(always)]
 pub fn upper_bound<const D: usize>(rows: &[[f64; D]], motion: &[f64; D]) -> f64 {
@@ -50,10 +54,14 @@ pub fn upper_bound<const D: usize>(rows: &[[f64; D]], motion: &[f64; D]) -> f64 
     let off = (D as f64 + 8.0) * SAFE * U;
     let mut highest = -1.0f64; // of rows that are all zero; as an upper bound it costs nothing
     for row in rows {
-        let length = norm(row);
-        if length > 0.0 {
-            highest = highest.max(dot(row, motion) / size + off * length);
+        if row.iter().all(|&value| value == 0.0) {
+            continue;
         }
+        let length = norm(row);
+        if length < SQUARES_UNDERFLOW {
+            return f64::INFINITY;
+        }
+        highest = highest.max(dot(row, motion) / size + off * length);
     }
     highest
 }
