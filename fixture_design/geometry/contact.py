@@ -228,7 +228,7 @@ def _check_sizes(element: Element) -> None:
 
 
 def _checked(element: Element, values: Point, key: str, dimension: int) -> Point:
-    """A point or direction of an element, as an array of the right length."""
+    """A point of an element, or a direction of its at about length one, as an array of the right length."""
     found = np.asarray(values, dtype=np.float64)
     if found.shape != (dimension,):
         raise DimensionError(
@@ -238,7 +238,8 @@ def _checked(element: Element, values: Point, key: str, dimension: int) -> Point
         raise GeometryError(f"element {element.name!r}: `{key}` is not finite", found=str(found.tolist()))
     if key != "at" and not found.any():
         raise GeometryError(f"element {element.name!r}: `{key}` has zero length", expected="a direction")
-    return found
+    # by a power of two, which rounds nothing: squares of 1e-200 are zero
+    return found if key == "at" else np.ldexp(found, -int(np.frexp(np.abs(found).max())[1]))
 
 
 def _check_single(element: Element, instead: str) -> None:

@@ -114,8 +114,9 @@ def normal_error(
     """How far normals at some places of a fitted surface may be off [rad]; infinite if the points leave it open.
 
     The parameters' covariance from the fit, carried over to the normals. Where the points are off by no more than their
-    noise, by three standard deviations: a crown or taper that is lost in the noise is not told from none. Else the surface is not quite of this kind, all may be off one way, which
-    the square root of their number allows for, and the surface may wave by as much from facet to facet.
+    noise, by three standard deviations: a crown or taper that is lost in the noise is not told from none. Else the
+    surface is not quite of this kind, all may be off one way, which the square root of their number allows for, and the
+    surface may wave by as much from facet to facet.
 
     Args:
         points: that were fitted.  where: the places.

@@ -117,7 +117,6 @@ def bands_of(rings: Rings, triangles: Triangles, near: Indices, normals: Float[n
     count = len(rings.reach)
     pair = low * count + high
     narrow = _narrow(start, end, pair * count + base, turn)
-    found = []
     pole = rings.reach == 0
     possible = (turn <= 2 * RING_ANGLE) & (lengths > 0) & narrow
     fine, found = np.zeros(len(inside), dtype=bool), []

@@ -26,6 +26,8 @@ _TANGENT = 0.2
 
 #: A cone that widens by less than this part of its height is a cylinder [-].
 _NO_SLOPE = 1e-6
+#: A circle's centre may be this many tolerances beyond the axis, and is on it where this part of its radius off [-].
+_BEYOND_AXIS, _ON_AXIS = 10.0, 1e-6
 
 #: What is beyond the end of a row of bands.
 Beyond = Callable[[int, int], tuple[float, float, bool] | None]
@@ -243,9 +245,9 @@ def _circle(places: _Places, tolerance: float) -> tuple[Float[np.ndarray, 2], fl
     solution = np.linalg.lstsq(rows, np.sum((places - middle) ** 2, axis=1), rcond=None)[0]
     center = solution[:2] + middle
     reach = np.hypot(*(places - center).T)
-    if np.ptp(reach) > 2 * tolerance or (center[0] < 0 and abs(center[0]) > 10 * tolerance):
+    if np.ptp(reach) > 2 * tolerance or center[0] < -_BEYOND_AXIS * tolerance:
         return None
-    if places[:, 0].min() == 0 and abs(center[0]) > 10 * tolerance:
+    if places[:, 0].min() == 0 and abs(center[0]) > _BEYOND_AXIS * tolerance:
         return None
     return center, float(reach.mean())
 
@@ -275,7 +277,7 @@ def _arc_shape(rings: Rings, center: Float[np.ndarray, 2], place: Float[np.ndarr
     axis, radius = rings.axis, float(np.hypot(*(place - center)))
     point = axis.point + center[1] * axis.direction
     # where rings are as good as on a ball they are on one
-    if center[0] <= 1e-6 * radius:
+    if center[0] <= _ON_AXIS * radius:
         return RoundShape("sphere", point, axis.direction, radius)
     return RoundShape("torus", point, axis.direction, radius, float(center[0]))
 

@@ -92,17 +92,24 @@ def test_two_solids_in_one_plane_count_as_one_facet(tmp_path: Path) -> None:
 def test_hull_is_that_of_the_overlap_with_the_outline(
     plate: PartGeometry, x: float, y: float, angle: float, width: float, height: float
 ) -> None:
-    """By another route: the outline with its holes as one polygon, without triangles."""
+    """By another route: the outline with its holes as one polygon, without triangles.
+
+    Where an edge of the pad lies along one of the outline's, a hair decides whether the edge is touched beyond it.
+    """
     top = shapely.Polygon(OUTLINE, [HOLE, SLOT])
     if not top.buffer(-1e-6).contains(shapely.Point(x, y)):
         return
     rectangle = shapely.affinity.translate(
         shapely.affinity.rotate(shapely.box(-width / 2, -height / 2, width / 2, height / 2), angle, (0, 0), True), x, y
     )
-    expected = shapely.convex_hull(shapely.intersection(top, rectangle))
+    least, most = (
+        shapely.convex_hull(shapely.intersection(top, rectangle.buffer(hair, join_style="mitre"))).buffer(1e-7)
+        for hair in (-1e-9, 1e-9)
+    )
     contacts = pad(plate, [x, y, 0.01], (width, height), (np.cos(angle), np.sin(angle), 0))
     found = shapely.convex_hull(shapely.multipoints([contact.point[:2] for contact in contacts]))
-    assert shapely.hausdorff_distance(found, expected) < 1e-7
+    assert most.contains(found)
+    assert found.buffer(2e-7).contains(least)
     assert [c.name for c in contacts] == [f"K1#{k}" for k in range(1, len(contacts) + 1)]
     order = [tuple(np.round(contact.point, 9)) for contact in contacts]
     assert order == sorted(order)

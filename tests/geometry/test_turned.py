@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +133,27 @@ def test_a_badly_measured_shaft_is_a_cylinder(tmp_path: Path, sections: int, fol
         (surface,) = loaded(tmp_path, (shaken, triangles)).smooth_surfaces
         assert surface.kind == "cylinder"
         assert off_axis(surface) <= surface.axis_error <= surface.normal_error <= 2e-3
+
+
+@pytest.mark.parametrize("sections", [24, 48, 96])
+def test_a_crowned_land_says_how_far_off_its_normals_are(tmp_path: Path, sections: int) -> None:
+    """A crown of 2 or 3 um, in a file that rounds to 1 um: a cylinder within its error, or no cylinder."""
+    for crown in (2e-6, 3e-6):
+        heights = np.linspace(-0.005, 0.005, 6)
+        lands = np.column_stack([0.02 + crown * (1 - (heights / 0.005) ** 2), 0.02 + heights])
+        profile = [[0, 0], [0.02, 0], *lands.tolist(), [0.015, 0.03], [0.015, 0.1], [0, 0.1]]
+        vertices, triangles = turned(profile, sections, "short")
+        part = PartGeometry("part", np.round(vertices, 6), triangles, np.full(len(vertices), 5e-7))
+        judged = 0
+        for low, high in pairwise(lands):
+            middle, slope = (low + high) / 2, (low[0] - high[0]) / (high[1] - low[1])
+            for surface in part.smooth_surfaces:
+                on = vertices[triangles[np.isin(part.facet_of_triangle, surface.facets)]].mean(axis=1)[:, 2]
+                if np.abs(on - middle[1]).min() < 5e-4 and surface.kind == "cylinder":
+                    given = surface.normal(np.array([middle[0], 0.0, middle[1]]))
+                    assert abs(np.arctan2(given[2], given[0]) - slope) <= surface.normal_error
+                    judged += 1
+        assert judged
 
 
 def test_a_band_of_an_unknown_profile_moves_along_itself_by_turning_only(tmp_path: Path) -> None:

@@ -82,6 +82,22 @@ def test_a_body_of_revolution_is_never_held(shape: str, sections: int, fold: str
     assert check(verdict) == []
 
 
+@pytest.mark.parametrize("fold", ["alternating", "half turned"])
+@pytest.mark.parametrize("shape", list(PROFILES))
+@pytest.mark.parametrize("sections", [11, 14, 32])
+def test_nor_is_one_whose_vertices_are_badly_known(shape: str, sections: int, fold: str, tmp_path: Path) -> None:
+    """Vertices off by up to 1e-4 of the size, and nothing in the file says so."""
+    rng = np.random.default_rng(sections)
+    vertices, triangles = turned(PROFILES[shape], sections, fold)
+    size = np.linalg.norm(np.ptp(vertices, axis=0))
+    for noise in (2e-5, 1e-4):
+        shaken = vertices + noise * size * rng.uniform(-1, 1, vertices.shape)
+        verdict = held((shaken, triangles), tmp_path, 24, sections)
+        for claim in ("form_closure", "deterministic"):
+            assert verdict.groups["all"].findings[claim].answer is not Answer.YES
+        assert check(verdict) == []
+
+
 @pytest.mark.parametrize("fold", ["short", "alternating", "random", "half turned"])
 @pytest.mark.parametrize("shape", list(PROFILES))
 def test_its_spin_is_found_where_the_mesh_is_fine(shape: str, fold: str, tmp_path: Path) -> None:

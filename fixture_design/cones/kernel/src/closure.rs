@@ -67,6 +67,9 @@ pub fn closure<const D: usize>(rows: &[[f64; D]], sizes: Sizes) -> Bounds<D> {
     bounds
 }
 
+/// Part of its target that a least-squares residual is, at least, to be a motion that leaves the rows for sure.
+const CLEARLY_LEAVING: f64 = 1e-6;
+
 /// Bounds from one nonnegative least squares.
 #[inline(always)]
 pub fn at_once<const D: usize>(rows: &[[f64; D]]) -> Bounds<D> {
@@ -79,7 +82,7 @@ pub fn at_once<const D: usize>(rows: &[[f64; D]]) -> Bounds<D> {
     }
     let found = nonnegative_least_squares(rows, &target);
     let size = norm(&found.residual);
-    if size > 1e-6 * norm(&target) || rows.len() <= D {
+    if size > CLEARLY_LEAVING * norm(&target) || rows.len() <= D {
         (bounds.upper, bounds.motion) = leaving(rows, &found);
         return bounds;
     }
