@@ -1,5 +1,6 @@
 """The nouns: what a layout is made of, how its contacts are grouped, what a verdict says."""
 
+from fixture_design.layout.answer import Answer
 from fixture_design.layout.groups import Group, element_name, groups_of
 from fixture_design.layout.layout import (
     Body,
@@ -20,8 +21,21 @@ from fixture_design.layout.layout import (
     Tip,
 )
 from fixture_design.layout.pose import Pose
+from fixture_design.layout.use import (
+    Balance,
+    ContactForce,
+    FeatureError,
+    LoadsHeld,
+    LoadVerdict,
+    LocatingErrors,
+    Obstacle,
+    Rocking,
+    Seating,
+    SeatingStep,
+    StraightWays,
+    Unbalanced,
+)
 from fixture_design.layout.verdict import (
-    Answer,
     Counted,
     Evidence,
     Finding,
@@ -31,16 +45,20 @@ from fixture_design.layout.verdict import (
     Rule,
     RuleName,
     Singular,
+    UseEvidence,
     Verdict,
     Weights,
 )
 
 __all__ = [
     "Answer",
+    "Balance",
     "Body",
+    "ContactForce",
     "Counted",
     "Element",
     "Evidence",
+    "FeatureError",
     "Finding",
     "Group",
     "GroupVerdict",
@@ -48,7 +66,11 @@ __all__ = [
     "Layout",
     "LineTip",
     "Load",
+    "LoadVerdict",
+    "LoadsHeld",
+    "LocatingErrors",
     "Motion",
+    "Obstacle",
     "PadTip",
     "Part",
     "PinTip",
@@ -56,14 +78,20 @@ __all__ = [
     "Pose",
     "Requirement",
     "RequirementVerdict",
+    "Rocking",
     "Rule",
     "RuleName",
+    "Seating",
+    "SeatingStep",
     "Singular",
     "SoftTip",
     "Space",
     "SphereTip",
     "Stage",
+    "StraightWays",
     "Tip",
+    "Unbalanced",
+    "UseEvidence",
     "Verdict",
     "Weights",
     "element_name",

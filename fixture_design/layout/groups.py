@@ -16,15 +16,24 @@ from fixture_design.layout.layout import Layout, Requirement
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """A name, its contacts in layout order (possibly none), and what is required of them."""
+    """Contacts that are looked at together, and what acts on the part meanwhile.
+
+    Attributes:
+        contacts: in layout order, possibly none.  require: what is required of them.
+        gravity: whether the layout's gravity acts.  loads: names of the loads that act, one at a time.
+    """
 
     name: str
     contacts: tuple[Contact, ...]
     require: tuple[Requirement, ...]
+    gravity: bool = True
+    loads: tuple[str, ...] = ()
 
 
 def groups_of(layout: Layout, contacts: Sequence[Contact]) -> tuple[Group, ...]:
     """The groups of a layout whose contacts have been found: locators, all, then the stages in file order.
+
+    Gravity acts on both, and all loads on the second.
 
     A stage's ``active`` takes roles, contact names and element names (for an element that gave several contacts).
 
@@ -34,7 +43,7 @@ def groups_of(layout: Layout, contacts: Sequence[Contact]) -> tuple[Group, ...]:
     everything = tuple(contacts)
     groups = [
         Group("locators", tuple(c for c in contacts if c.role == "locator"), layout.require.get("locators", ())),
-        Group("all", everything, layout.require.get("all", ())),
+        Group("all", everything, layout.require.get("all", ()), loads=tuple(load.name for load in layout.loads)),
     ]
     owners = {contact.name: element_name(contact.name) for contact in contacts}
     for stage in layout.stages:
@@ -44,7 +53,7 @@ def groups_of(layout: Layout, contacts: Sequence[Contact]) -> tuple[Group, ...]:
                 place = layout.places.get(("stages", stage.name)) or f"stage {stage.name!r}"
                 raise UnknownNameError("role, element or contact", active, names, source=layout.source, place=place)
         chosen = tuple(c for c in contacts if {c.role, c.name, owners[c.name]} & set(stage.active))
-        groups.append(Group(stage.name, chosen, stage.require))
+        groups.append(Group(stage.name, chosen, stage.require, stage.gravity, stage.loads))
     return tuple(groups)
 
 

@@ -4,32 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Literal
 
 from fixture_design.arrays import Point, Vector
 from fixture_design.cones import PolyhedralConvexCone
 from fixture_design.contacts import Contact
+from fixture_design.layout.answer import Answer
 from fixture_design.layout.layout import Requirement, Space
+from fixture_design.layout.use import LoadsHeld, LocatingErrors, Seating, StraightWays
 
 #: Rules that make an answer certain whatever the normals are.
 RuleName = Literal["few rows", "few normals", "common slip", "slip or leave"]
-
-
-class Answer(StrEnum):
-    """An answer; undecided is one of its own and never rounded."""
-
-    YES = "yes"
-    NO = "no"
-    UNDECIDED = "undecided"
-
-    @classmethod
-    def of(cls, truth: bool | None) -> Answer:
-        """True, False, or None for undecided."""
-        return cls.UNDECIDED if truth is None else cls.YES if truth else cls.NO
-
-    def negated(self) -> Answer:
-        return {Answer.YES: Answer.NO, Answer.NO: Answer.YES}.get(self, self)
 
 
 @dataclass(frozen=True)
@@ -108,6 +93,7 @@ class Singular:
 
 
 Evidence = Motion | Singular | tuple[Weights, ...]
+UseEvidence = LocatingErrors | LoadsHeld | Seating | StraightWays
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +104,7 @@ class Finding:
         answer: None for an empty group.
         margin: dimensionless, see DESIGN of the format; None where it was not computed.
         evidence: a motion, a rank, or weights for every branch that needs them; None only if undecided or empty.
+        use: in its place for what the fixture does to the part (`layout.use`).
         residual: the largest one of the evidence.
         edges: number of friction edges in space, for force closure.
         tangents: with edges, for each contact with friction the unit tangent t of each normal n, clause after clause:
@@ -132,6 +119,7 @@ class Finding:
     edges: int | None = None
     tangents: Mapping[str, tuple[Point, ...]] | None = None
     reason: str | None = None
+    use: UseEvidence | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from fixture_design.tolerances import DEFAULT
 from fixture_design.verification.proofs import Case, Pyramids, coverage_fault, motion_fault, rank_fault, weights_fault
 from fixture_design.verification.residuals import residual_fault
 from fixture_design.verification.rules import SLIP_RULES, rule_fault
+from fixture_design.verification.use_proofs import USE_PROOFS
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,8 @@ def _fault(claim: str, finding: Finding, case: Case, report: Scale | None) -> st
         return f"the margin {finding.margin} is no finite number"
     if finding.answer is Answer.UNDECIDED:
         return None
+    if claim in USE_PROOFS:
+        return USE_PROOFS[claim](finding, case.contacts)
     proof = _PROOFS.get((claim, finding.answer))
     if proof is None:
         return "no such question is known"

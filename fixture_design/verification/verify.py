@@ -7,7 +7,7 @@ trimesh nor scipy.optimize.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -39,7 +39,9 @@ from fixture_design.layout import (
 )
 from fixture_design.tolerances import DEFAULT, Tolerances
 from fixture_design.verification.checker import sum_up
+from fixture_design.verification.found import FoundContacts
 from fixture_design.verification.linked import bracketed
+from fixture_design.verification.use import USE_QUESTIONS, with_use
 from fixture_design.version import VERSION
 
 #: The questions this version answers about every group, in the order they are reported.
@@ -55,15 +57,6 @@ QUESTIONS = {
 _NAMES_SHOWN = 5
 
 
-@dataclass(frozen=True, eq=False)
-class FoundContacts:
-    """All contacts of a layout, the scale its margins are measured in, and what there is to say about them."""
-
-    contacts: tuple[Contact, ...]
-    report: Scale
-    notes: tuple[str, ...]
-
-
 def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
     """Contacts, findings and requirements of a layout.
 
@@ -74,6 +67,7 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
     notes = list(found.notes) + coincident_notes(found.contacts, found.report)
     groups = groups_of(layout, found.contacts)
     verdicts = group_verdicts(groups, found.report, notes, tolerances)
+    verdicts = {group.name: with_use(verdicts[group.name], layout, group, found, tolerances) for group in groups}
     requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
     return Verdict(
         name=layout.name,
@@ -207,7 +201,7 @@ def _requirement_verdicts(
             if not group.contacts:
                 notes.append(f"{group.name}: {require} is required of a group without contacts: not satisfied")
                 found.append(RequirementVerdict(group.name, require, None))
-            elif require in QUESTIONS:
+            elif require in QUESTIONS or require in USE_QUESTIONS:
                 found.append(RequirementVerdict(group.name, require, verdicts[group.name].findings[require].answer))
             else:
                 notes.append(f"{group.name}: {require} is not evaluated by version {VERSION}: undecided")

@@ -1,0 +1,26 @@
+"""What the fixture does to the part: the questions that are asked of a group only where its requirements ask them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from fixture_design.layout import Finding, Group, GroupVerdict, Layout
+from fixture_design.tolerances import Tolerances
+from fixture_design.verification.found import FoundContacts
+
+UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
+
+#: In the order they are reported.
+USE_QUESTIONS: dict[str, UseQuestion] = {}
+
+
+def with_use(
+    verdict: GroupVerdict, layout: Layout, group: Group, found: FoundContacts, tolerances: Tolerances
+) -> GroupVerdict:
+    """The verdict of a group with those findings that its requirements ask for; of an empty group, no answer."""
+    findings = dict(verdict.findings)
+    for name, question in USE_QUESTIONS.items():
+        if name in group.require:
+            findings[name] = question(layout, group, found, tolerances) if group.contacts else Finding(None)
+    return replace(verdict, findings=findings)

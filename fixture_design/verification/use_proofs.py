@@ -1,0 +1,13 @@
+"""Which file confirms which question of `verification.use`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from fixture_design.contacts import Contact
+from fixture_design.layout import Finding
+
+#: What is wrong with a finding about these contacts of its group; None if nothing is.
+UseProof = Callable[[Finding, Sequence[Contact]], str | None]
+
+USE_PROOFS: dict[str, UseProof] = {}
