@@ -7,6 +7,7 @@ from fixture_design.geometry.contact import contact_of, contacts_of_element, pol
 from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
+from fixture_design.geometry.mass import Mass, mass_of
 from fixture_design.geometry.mesh_file import unreadable
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
@@ -20,6 +21,7 @@ __all__ = [
     "Box",
     "Facet",
     "GeometryContacts",
+    "Mass",
     "Overlap",
     "PartGeometry",
     "PlacedBody",
@@ -37,6 +39,7 @@ __all__ = [
     "grid_points",
     "load_geometry",
     "load_part",
+    "mass_of",
     "polygon_contact",
     "polygon_contacts",
     "polygon_of",
