@@ -15,6 +15,7 @@ from fixture_design.geometry.polygon_sampling import given_polygon_points, sampl
 from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
 from fixture_design.geometry.sampling import SurfacePoints, given_points, grid_points, sample_surface
 from fixture_design.geometry.sampling_rules import Box, SamplingRules
+from fixture_design.geometry.sharp_edges import sharp_edges
 from fixture_design.geometry.slide import Slide, slide
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "polygon_of",
     "sample_polygon",
     "sample_surface",
+    "sharp_edges",
     "slide",
     "unreadable",
 ]

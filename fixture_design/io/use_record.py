@@ -23,6 +23,7 @@ from fixture_design.layout import (
     StraightWays,
     Unbalanced,
     UseEvidence,
+    severity,
 )
 
 Data = dict[str, object]
@@ -54,7 +55,7 @@ def loads_to_list(groups: Mapping[str, GroupVerdict], brief: bool) -> list[Data]
 
 
 def _load(points: Sequence[LoadVerdict], brief: bool) -> Data:
-    worst = worst_of(points)
+    worst = min(points, key=severity)
     data: Data = {"load": worst.load, "verdict": str(worst.answer), "reserve": _reserve(worst)}
     if worst.row is not None:
         held = sum(point.answer == "yes" for point in points)
@@ -68,12 +69,6 @@ def _load(points: Sequence[LoadVerdict], brief: bool) -> Data:
             {"row": int(point.row or 0), "verdict": str(point.answer), "reserve": _reserve(point)} for point in points
         ]
     return data
-
-
-def worst_of(points: Sequence[LoadVerdict]) -> LoadVerdict:
-    """The point that fails, or is undecided, or has the least reserve."""
-    order = {"no": 0, "undecided": 1, "yes": 2}
-    return min(points, key=lambda point: (order[str(point.answer)], point.reserve[0] if point.reserve else 0.0))
 
 
 def _reserve(load: LoadVerdict) -> list[object] | None:
