@@ -30,7 +30,8 @@ th { background: #f4f4f4; font-weight: 600; } .answer { font-weight: 600; } .yes
 .views { display: flex; flex-wrap: wrap; }
 figure { margin: .5rem; } figcaption { text-align: center; color: #666; }
 code { font-size: 12px; word-break: break-all; }
-.sign td { height: 3rem; } article { page-break-after: always; } @media print { body { margin: 0; } }
+.sign td { height: 3rem; } article { page-break-after: always; }
+@page { size: A4; margin: 12mm; } @media print { body { margin: 0; font-size: 11px; max-width: none; } }
 """
 
 

@@ -49,7 +49,7 @@ class _Paper:
     def of(cls, axes: tuple[int, int], everything: Points) -> _Paper:
         seen = everything[:, list(axes)]
         low, size = seen.min(axis=0), np.ptp(seen, axis=0)
-        largest = float(size.max())
+        largest = float(np.ptp(everything, axis=0).max())  # one scale for all views
         scale = (_WIDTH - 2 * _ROOM) / (largest if largest > 0 else 1.0)
         return cls(axes, low, scale, float(size[1]) * scale + 2 * _ROOM)
 
@@ -61,7 +61,7 @@ class _Paper:
 def _view(name: str, axes: tuple[int, int], segments: Ends, contacts: Sequence[Contact], everything: Points) -> Markup:
     paper = _Paper.of(axes, everything)
     edges = joined(tag("path", d=_path(paper, segments), fill="none", stroke="#444", stroke_width=0.8) for _ in "e")
-    marks = joined(_mark(paper, contact) for contact in contacts)
+    marks = joined([*(_mark(paper, contact) for contact in contacts), *_names(paper, contacts)])
     height = round(paper.height, 1)
     drawing = tag("svg", edges, marks, viewBox=f"0 0 {_WIDTH} {height}", width=_WIDTH, height=height, role="img")
     letters = "".join("xyz"[axis] for axis in axes)
@@ -79,7 +79,7 @@ def _path(paper: _Paper, segments: Ends) -> str:
 
 
 def _mark(paper: _Paper, contact: Contact) -> Markup:
-    """A dot, an arrow for every normal that is seen from the side, the name."""
+    """A dot, and an arrow for every normal that is seen from the side."""
     x, y = paper.at(contact.point)
     color = ROLE_COLORS[contact.role]
     arrows = []
@@ -90,5 +90,19 @@ def _mark(paper: _Paper, contact: Contact) -> Markup:
             line = {"x1": round(u, 2), "y1": round(v, 2), "x2": x, "y2": y}
             arrows.append(tag("line", stroke=color, stroke_width=1.5, **line))
     dot = tag("circle", cx=x, cy=y, r=_DOT, fill=color)
-    name = tag("text", contact.name, x=x + _DOT + 1, y=y - _DOT - 1, fill=color, font_size=_TEXT)
-    return joined([*arrows, dot, name])
+    return joined([*arrows, dot])
+
+
+def _names(paper: _Paper, contacts: Sequence[Contact]) -> list[Markup]:
+    """The names of the contacts, together where they are seen in one place."""
+    places: dict[tuple[float, float], list[Contact]] = {}
+    for contact in contacts:
+        x, y = paper.at(contact.point)
+        places.setdefault((round(x), round(y)), []).append(contact)
+    return [
+        tag(
+            "text", ", ".join(contact.name for contact in there), x=x + _DOT + 1, y=y - _DOT - 1,
+            fill=ROLE_COLORS[there[0].role], font_size=_TEXT,
+        )
+        for (x, y), there in places.items()
+    ]  # fmt: skip
