@@ -7,9 +7,10 @@ more than once, it rests on some of the contacts, a seat, and which depends on t
 are taken over all seats (`seats`) that can carry gravity and the clamps' preloads, or over all there are where these
 are not known. To first order: turns by small angles, and normals that stay.
 
-yes: no seat lets any feature be off by more than its tolerance. no: a feature's bound is beyond its tolerance on every
-seat, and a displacement that occurs shows it; or a feature moves with a motion that no locator notices. A tie, or seats
-that disagree, are undecided.
+yes: no seat lets any feature be off by more than its tolerance. no: a displacement that occurs has a feature off by
+more, and either the seat that it rests on carries what presses the part, or that is not known and every seat's bound is
+beyond the tolerance; or a feature moves with a motion that no locator notices. A tie, or seats that disagree, are
+undecided.
 """
 
 from __future__ import annotations
@@ -178,15 +179,16 @@ def _feature_answer(
         return Answer.UNDECIDED, f"there are more seats than were looked at for {name}"
     if feature.worst + slack <= allowed * (1 - tolerances.tie):
         return Answer.YES, None
-    if feature.displacement is not None and feature.least - slack > allowed * (1 + tolerances.tie):
+    if feature.displacement is not None:
         return Answer.NO, None
-    if feature.least <= allowed * (1 - tolerances.tie):
-        if feature.worst - slack <= allowed * (1 + tolerances.tie):
-            return Answer.UNDECIDED, f"{name} is within its tolerance but for what the normals may be off"
-        return Answer.UNDECIDED, f"{name} is within its tolerance on some seats and not on {_list(feature.seat)}"
-    if feature.least <= allowed * (1 + tolerances.tie):
+    if feature.worst <= allowed * (1 - tolerances.tie):
+        return Answer.UNDECIDED, f"{name} is within its tolerance but for what the normals may be off"
+    if feature.worst - slack <= allowed * (1 + tolerances.tie):
         return Answer.UNDECIDED, f"the error of {name} is just its tolerance"
-    return Answer.UNDECIDED, f"the bound of {name} is beyond its tolerance; no displacement was found that is"
+    if feature.least <= allowed * (1 + tolerances.tie):
+        seat = _list(feature.seat)
+        return Answer.UNDECIDED, f"{name} is within its tolerance on some seats and not on {seat}; what presses decides"
+    return Answer.UNDECIDED, f"the bound of {name} is beyond its tolerance, but no displacement was found that is"
 
 
 def _list(names: Sequence[str]) -> str:

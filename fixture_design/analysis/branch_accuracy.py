@@ -65,13 +65,13 @@ def branch_accuracy(
     free = _free(targets, seats, rows, tolerances)
     if free is None:
         return Blurred("a feature's motion along what is not located is neither zero nor clear of it")
-    kept = carrying(rows.rows, rows.both, seats, _scaled(pressing, rows), tolerances)
+    kept, pressed = carrying(rows.rows, rows.both, seats, _scaled(pressing, rows), tolerances)
     wanted = np.vstack([targets, _pose_targets(rows, reference)]) if whole else targets
     errors = seat_errors(rows, seats, wanted, tolerances)
     spare = np.where(kept[:, None], slack(rows, seats, errors), 0.0).max(axis=0)
     if not np.isfinite(spare).all():
         return Blurred("the contacts' smallest singular value is not clear of what the normals may be off")
-    case = _Case(rows, seats, kept, errors, tolerances)
+    case = _Case(rows, seats, kept, pressed, errors, spare, tolerances)
     found = tuple(
         case.free(feature, unit) if k in free else case.feature(k, feature, unit)
         for k, (feature, unit) in enumerate(zip(features, units, strict=True))
@@ -128,7 +128,9 @@ class _Case:
     rows: LocatingRows
     seats: Seats
     kept: Mask
+    pressed: bool
     errors: SeatErrors
+    slack: Weights
     tolerances: Tolerances
 
     def free(self, feature: KeyFeature, unit: Point) -> FeatureError:
@@ -140,7 +142,7 @@ class _Case:
         source = int(self.errors.source[worst, k])
         weights = self.errors.weights[source, k]
         shares = self.rows.shares(weights)
-        members = self.seats.members[source].tolist()
+        members = sorted({*self.seats.members[source].tolist(), *np.flatnonzero(weights).tolist()})
         found = self._displaced(k, feature.tolerance, float(bounds[self.kept].min()))
         seat = self.seats.members[worst if found is None else found.seat]
         return FeatureError(
@@ -160,9 +162,9 @@ class _Case:
         )
 
     def _displaced(self, k: int, tolerance: float, least: float) -> Displaced | None:
-        """Only for what is to be refused: every seat's bound is beyond the tolerance."""
-        beyond = tolerance * (1 + self.tolerances.tie)
-        if least <= beyond:
+        """Only for what may be refused: where what presses the part is known, or every seat's bound is too large."""
+        beyond = tolerance * (1 + self.tolerances.tie) + float(self.slack[k])
+        if least <= beyond and not self.pressed:
             return None
         near = self.tolerances.near
         return displaced(self.rows, self.seats, self.kept, self.errors, k, beyond, near)

@@ -15,6 +15,7 @@ from itertools import product
 
 import numpy as np
 
+from fixture_design.analysis.lightest import lightest
 from fixture_design.analysis.locating_rows import LocatingRows
 from fixture_design.analysis.seats import Seats, scattered, solved
 from fixture_design.arrays import Indices, Mask, Point, Rows, Vector, Weights
@@ -31,7 +32,7 @@ class SeatErrors:
     """Bounds of some targets on all seats.
 
     Attributes:
-        weights: of each seat's rows for each target, shape (n, k, m).
+        weights: of each seat's rows for each target, and of those on both sides (`lightest`), shape (n, k, m).
         own: the bounds they give, shape (n, k) [unit of the target].
         bound: the smallest that holds on each seat, shape (n, k).
         source: the seat whose weights give it, shape (n, k).
@@ -50,6 +51,8 @@ def seat_errors(rows: LocatingRows, seats: Seats, targets: Rows, tolerances: Tol
         targets: shape (k, d), each in the span of the rows.
     """
     weights = scattered(solved(rows.rows, seats, targets), seats, len(rows.rows))
+    if len(rows.rows) > len(seats.basis):
+        weights = lightest(weights, rows.rows, rows.normals, rows.both, rows.owner, rows.radius, tolerances.near)
     own = rows.shares(weights).sum(axis=-1)
     source = np.broadcast_to(np.arange(len(own))[:, None], own.shape)
     if not 1 < len(own) <= MAX_COMPARED:
@@ -104,7 +107,9 @@ def displaced(
     rows: LocatingRows, seats: Seats, kept: Mask, errors: SeatErrors, column: int, beyond: float, near: float
 ) -> Displaced | None:
     """A displacement with an error ``beyond`` [m], on a seat that is kept, at which the part enters no element."""
-    own = np.where(kept, errors.own[:, column], -np.inf)
+    # where other weights bound the error below a seat's own extreme, that extreme does not occur
+    own, bound = errors.own[:, column], errors.bound[:, column]
+    own = np.where(kept & (own <= bound * (1 + near)), own, -np.inf)
     worst_first = np.argsort(-own)[:MAX_TRIED]
     for seat in worst_first[own[worst_first] > beyond].tolist():
         for sign, rest in product((1.0, -1.0), (0.0, 1.0)):
@@ -131,7 +136,8 @@ def _extreme(
     moves = directions * rows.radius[:, None]
     errors = np.sum(rows.normals * moves[rows.owner], axis=1) + sign * np.sign(weights) * rows.form
     motion = np.linalg.solve(rows.rows[members] @ seats.basis.T, errors[members]) @ seats.basis
-    for e in sorted(set(range(len(rows.elements))) - set(rows.owner[members].tolist())):
+    # a pin that does not count is wherever its hole is
+    for e in np.flatnonzero(~counts).tolist():
         walls = (rows.owner == e) & rows.both
         if walls.any():
             moves[e] = np.linalg.pinv(rows.normals[walls]) @ (rows.rows[walls] @ motion)

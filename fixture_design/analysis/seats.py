@@ -80,25 +80,28 @@ def _blocks(linked: np.ndarray) -> list[tuple[int, ...]]:
     return groups
 
 
-def carrying(rows: Rows, both: Mask, seats: Seats, wrench: Vector | None, tolerances: Tolerances) -> Mask:
-    """Which seats can carry a wrench without friction, or cannot be proved not to; all of them if none can.
+def carrying(rows: Rows, both: Mask, seats: Seats, wrench: Vector | None, tolerances: Tolerances) -> tuple[Mask, bool]:
+    """Which seats can carry a wrench without friction, or cannot be proved not to, and whether it told them apart.
 
     A contact pushes the part along -d_i, so that w = sum N_i d_i with N_i >= 0, of any sign for rows that keep the part
     on both sides.
 
     Args:
-        wrench: dimensionless like the rows, of any size, shape (d,); None carries no information.
+        wrench: dimensionless like the rows, of any size, shape (d,); None tells nothing.
+
+    Returns:
+        all seats and False where the wrench is not known, or no seat carries it.
     """
     every = np.ones(len(seats.members), dtype=bool)
-    if wrench is None or len(every) < 2 or not np.any(wrench):
-        return every
+    if wrench is None or not np.any(wrench):
+        return every, False
     unit = wrench / np.linalg.norm(wrench)
     if np.linalg.norm(unit - (unit @ seats.basis.T) @ seats.basis) > tolerances.zero:
-        return every
+        return every, False
     forces = solved(rows, seats, unit[None])[:, 0]
     lowest = np.where(both[seats.members], 0.0, forces).min(axis=1)
     carry = lowest >= -tolerances.near * np.abs(forces).max(axis=1)
-    return carry if carry.any() else every
+    return (carry, True) if carry.any() else (every, False)
 
 
 def solved(rows: Rows, seats: Seats, targets: Rows) -> np.ndarray:

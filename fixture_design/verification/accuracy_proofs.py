@@ -51,7 +51,11 @@ def accuracy_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
         fault = _feature_fault(feature, evidence, case) or _extent_fault(feature, found[k])
         if fault is not None:
             return f"{feature.feature}: {fault}"
-    return _answer_fault(finding.answer, evidence, found, case) or _costliest_fault(evidence)
+    return (
+        _answer_fault(finding.answer, evidence, found, case)
+        or _costliest_fault(evidence)
+        or _rockings_fault(evidence, case)
+    )
 
 
 def _numbers_fault(evidence: LocatingErrors, locators: Sequence[Contact]) -> str | None:
@@ -138,8 +142,11 @@ def _all_branches(evidence: LocatingErrors, case: Case) -> list[_Extent] | str:
             return "a feature moves along what is not located"
         if branch.doubt.any() and len(seats.basis) < max(len(branch.rows), case.dimension):
             return "the contacts depend on each other, up to what their normals may be off"
-        kept = kept_again(branch, seats, _scaled(evidence.pressing, case))
-        weights = seats.weights(wanted, len(branch.rows))
+        kept, _ = kept_again(branch, seats, _scaled(evidence.pressing, case))
+        weights = branch.lightest(seats.weights(wanted, len(branch.rows)), evidence.errors, evidence.form)
+        left = np.abs(weights @ branch.rows - wanted).max()
+        if left > SAME_ERROR * max(float(np.abs(weights).max()), float(np.abs(wanted).max())):
+            return "the weights of the seats do not make the features' rows"
         own = branch.shares(weights, evidence.errors, evidence.form).sum(axis=-1)
         bounds, slack = bounds_again(branch, seats, weights, own), _slack(branch, seats, weights, evidence)
         for k, extent in enumerate(extents):
@@ -223,30 +230,38 @@ def _answer_fault(
     if answer is Answer.YES:
         over = [f.feature for f, extent in pairs if extent.worst + extent.slack >= f.tolerance]
         return f"{over[0]} may be off by more than its tolerance" if over else None
-    shown = [f for f, extent in pairs if extent.least - extent.slack > f.tolerance]
-    faults = [_displacement_fault(feature, evidence, case) for feature in shown]
+    faults = [_displacement_fault(f, extent, evidence, case) for f, extent in pairs if f.displacement is not None]
     if None in faults:
         return None
-    return faults[0] if faults else "no feature is off by more than its tolerance on every seat"
+    return faults[0] if faults else "no feature has a displacement that shows an error beyond its tolerance"
 
 
-def _displacement_fault(feature: FeatureError, evidence: LocatingErrors, case: Case) -> str | None:
+def _displacement_fault(feature: FeatureError, extent: _Extent, evidence: LocatingErrors, case: Case) -> str | None:
     """Whether the part may be displaced so: at rest on a seat, into no element, off beyond the tolerance."""
     if feature.displacement is None or feature.moves is None:
         return "there is no displacement that shows the error"
     motion = feature.displacement
     if motion.shape != (case.dimension,) or not np.isfinite(motion).all():
         return "the displacement is none"
-    if not abs(feature.direction @ _velocity(motion, feature.point)) > feature.tolerance:
+    if not abs(feature.direction @ _velocity(motion, feature.point)) - extent.slack > feature.tolerance:
         return "the displacement's error is within the tolerance"
-    faults = [_rest_fault(branch, feature, motion, evidence, case) for branch in branches_again(case)]
+    everywhere = extent.least - extent.slack > feature.tolerance
+    faults = [_rest_fault(branch, feature, motion, everywhere, evidence, case) for branch in branches_again(case)]
     return None if None in faults else faults[0]
 
 
 def _rest_fault(
-    branch: BranchAgain, feature: FeatureError, motion: Vector, evidence: LocatingErrors, case: Case
+    branch: BranchAgain,
+    feature: FeatureError,
+    motion: Vector,
+    everywhere: bool,
+    evidence: LocatingErrors,
+    case: Case,
 ) -> str | None:
-    """Whether d_i . q <= n_i . u + form for all rows of a branch, nearly with equality on a seat that carries."""
+    """Whether d_i . q <= n_i . u + form for all rows of a branch, nearly with equality on a seat that carries.
+
+    ``everywhere``: the bounds of all seats are beyond the tolerance, so that it need not be known what presses.
+    """
     scaled, moves = motion_scaled(motion, case.scale.reference, case.scale.length), feature.moves or {}
     tiny = SAME_ERROR * max(float(np.abs(scaled).max()), *evidence.errors.values(), evidence.form)
     touching = []
@@ -264,7 +279,9 @@ def _rest_fault(
         touching.append(gap <= form + tiny)
     seats = seats_again(branch)
     assert not isinstance(seats, str), seats
-    kept = kept_again(branch, seats, _scaled(evidence.pressing, case))
+    kept, pressed = kept_again(branch, seats, _scaled(evidence.pressing, case))
+    if not (pressed or everywhere):
+        return "what presses the part is not known, and on some seat it is within the tolerance"
     on = [all(touching[i] for i in members) for members in seats.members[kept].tolist()]
     return None if any(on) else "the displaced part rests on no seat"
 
@@ -285,3 +302,19 @@ def _costliest_fault(evidence: LocatingErrors) -> str | None:
 
 def _used(feature: FeatureError) -> float:
     return feature.worst / feature.tolerance if feature.tolerance else np.inf
+
+
+def _rockings_fault(evidence: LocatingErrors, case: Case) -> str | None:
+    """Rocking contacts must depend on each other, and the motion must leave all but two at least where they are."""
+    for rocking in evidence.rockings:
+        members = [contact for contact in case.contacts if contact.name in rocking.contacts]
+        names = ", ".join(rocking.contacts)
+        if len(members) != len(rocking.contacts):
+            return f"some of {names} are no locators"
+        rows = np.vstack([case.rows(c, unit_normal(n)[None]) for c in members for n in c.normals])
+        if np.linalg.matrix_rank(rows, tol=case.near) == len(rows):
+            return f"{names} do not depend on each other"
+        moved = np.abs(rows @ motion_scaled(rocking.motion, case.scale.reference, case.scale.length))
+        if not np.any(np.abs(moved - rocking.size) <= SAME_ERROR * rocking.size):
+            return f"the motion between the seats on {names} moves none of them by {rocking.size:.3e}"
+    return None

@@ -12,6 +12,7 @@ from itertools import combinations, islice, product
 
 import numpy as np
 
+from fixture_design.analysis.lightest import lightest
 from fixture_design.analysis.seat_errors import MAX_COMPARED
 from fixture_design.analysis.seats import MAX_SEATS
 from fixture_design.arrays import Point, Rows, Vector
@@ -41,6 +42,13 @@ class BranchAgain:
     def walls(self, element: str) -> bool:
         """Whether an element's rows all keep the part on both sides."""
         return all(both for both, owner in zip(self.both, self.owners, strict=True) if owner == element)
+
+    def lightest(self, weights: np.ndarray, errors: Mapping[str, float], form: float) -> np.ndarray:
+        """The weights that `analysis.lightest` suggests: bounds as good as any, whose rows are checked."""
+        elements = self.elements
+        owner = np.array([elements.index(name) for name in self.owners], dtype=np.int64)
+        radius = np.array([errors[name] + form * self.walls(name) for name in elements])
+        return lightest(weights, self.rows, self.normals, self.both, owner, radius, self.near)
 
     def shares(self, weights: np.ndarray, errors: Mapping[str, float], form: float) -> np.ndarray:
         """What each element moves a feature of these row weights (..., m) by, shape (..., e)."""
@@ -138,7 +146,7 @@ def _groups(rows: Rows, near: float) -> list[tuple[tuple[int, ...], int]]:
     """Rows that depend on each other through fundamental circuits, with how many of them are independent."""
     basis: list[int] = []
     for i in range(len(rows)):
-        if np.linalg.svd(rows[[*basis, i]], compute_uv=False)[-1] > near:
+        if len(basis) < rows.shape[1] and np.linalg.svd(rows[[*basis, i]], compute_uv=False)[-1] > near:
             basis.append(i)
     groups = [{i} for i in basis]
     for i in sorted(set(range(len(rows))) - set(basis)):
@@ -149,17 +157,20 @@ def _groups(rows: Rows, near: float) -> list[tuple[tuple[int, ...], int]]:
     return [(tuple(sorted(group)), len(group & set(basis))) for group in groups]
 
 
-def kept_again(branch: BranchAgain, seats: SeatsAgain, wrench: Vector | None) -> np.ndarray:
-    """Seats that carry a dimensionless wrench, w = sum N_i d_i with N_i >= 0 but for both-sided rows; else all."""
+def kept_again(branch: BranchAgain, seats: SeatsAgain, wrench: Vector | None) -> tuple[np.ndarray, bool]:
+    """Seats that carry a dimensionless wrench, w = sum N_i d_i with N_i >= 0 but for both-sided rows, and True.
+
+    All, and False, where it is not known or none carries it.
+    """
     every = np.ones(len(seats.members), dtype=bool)
     if wrench is None or not np.any(wrench):
-        return every
+        return every, False
     unit = wrench / np.linalg.norm(wrench)
     if np.linalg.norm(unit - unit @ seats.basis.T @ seats.basis) > branch.near / DEFAULT.band**2:
-        return every
+        return every, False
     forces = seats.weights(unit[None], len(branch.rows))[:, 0]
     pulling = np.where(branch.both, 0.0, forces).min(axis=1) < -branch.near * np.abs(forces).max(axis=1)
-    return every if pulling.all() else ~pulling
+    return (every, False) if pulling.all() else (~pulling, True)
 
 
 def bounds_again(branch: BranchAgain, seats: SeatsAgain, weights: np.ndarray, own: np.ndarray) -> np.ndarray:
