@@ -1,6 +1,7 @@
 """Manipulation problems (thesis 2.3, 2.6): what a set of contacts allows, forbids and can hold."""
 
 from fixture_design.analysis.accessibility import accessible, strongly_accessible
+from fixture_design.analysis.accuracy import accurate
 from fixture_design.analysis.admissible_sets import (
     admissible_displacements,
     admissible_forces,
@@ -18,6 +19,7 @@ __all__ = [
     "HybridControl",
     "Restraint",
     "accessible",
+    "accurate",
     "admissible_displacements",
     "admissible_forces",
     "bidirectional_contacts",

@@ -21,11 +21,18 @@ class FeatureError:
 
     Attributes:
         feature: its name.  tolerance: allowed.
-        worst: the largest error, all elements at the ends of their tolerances, over all seats the part may take.
+        worst: the largest error, all elements at the ends of their tolerances, over all seats the part may take; inf
+            where the feature moves freely.
         least: the largest error in the best of these seats; ``worst`` where there is only one.
         rss: root sum square of the elements' shares, in the worst seat.
         shares: for each element its part of ``worst``, >= 0; they add up to it.
         seat: names of the contacts that the part sits on in the worst case.
+        point, direction: of the feature, in W; the direction at length one.
+        rows: (contact, index of its normal) of the rows whose ``weights`` add up to the feature's row
+            [direction; point X direction]. They bound the error: a row that the seat does not sit on has a weight of
+            the bound's sign.
+        displacement, moves: for a no: a displacement [dx; dtheta] about W's origin with an error beyond the tolerance,
+            and for each element the error of its position that lets the part rest there [m].
     """
 
     feature: str
@@ -35,6 +42,12 @@ class FeatureError:
     rss: float
     shares: Mapping[str, float]
     seat: tuple[str, ...]
+    point: Point
+    direction: Point
+    rows: tuple[tuple[str, int], ...] = ()
+    weights: tuple[float, ...] = ()
+    displacement: Vector | None = None
+    moves: Mapping[str, Point] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +73,10 @@ class LocatingErrors:
         features: one a key feature, in file order.
         pose: largest error of each coordinate of the displacement, about ``reference`` [m, rad], shape (d,).
         reference: in W [m].
-        errors: what each element's contacts may be off along their normals [m]: tolerance, half the clearance, form.
+        errors: how far each element's position may be off [m]: tolerance and half the clearance.
+        form: how far each touched point of the part's surface may be off, besides [m].
+        pressing: a wrench that holds the part on its seat, about W's origin, up to a positive factor; seats that cannot
+            carry it are no seats. None where it is not known.
         costliest: the element whose error costs most of the feature that uses most of its tolerance; None without.
         rockings: where the part is located more than once.
         motion: where it is not located at all, a motion that no locator notices; else None.
@@ -71,7 +87,9 @@ class LocatingErrors:
     pose: Vector | None
     reference: Point
     errors: Mapping[str, float]
+    form: float
     costliest: str | None
+    pressing: Vector | None = None
     rockings: tuple[Rocking, ...] = ()
     motion: Vector | None = None
     complete: bool = True

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from fixture_design.analysis import accurate
 from fixture_design.layout import Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
 from fixture_design.verification.found import FoundContacts
 
 UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
 
+
+def _accurate(layout: Layout, group: Group, found: FoundContacts, tolerances: Tolerances) -> Finding:
+    return accurate(layout, group, found.report.reference, tolerances)
+
+
 #: In the order they are reported.
-USE_QUESTIONS: dict[str, UseQuestion] = {}
+USE_QUESTIONS: dict[str, UseQuestion] = {"accurate": _accurate}
 
 
 def with_use(

@@ -1,0 +1,62 @@
+"""What presses a part onto its locators: gravity, and clamps that push with given forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fixture_design.arrays import Point, Vector
+from fixture_design.contacts import Contact, cross, unit_normal
+from fixture_design.layout import Element, Group, Layout, element_name
+from fixture_design.tolerances import DEFAULT
+
+
+def pressing_wrench(layout: Layout, group: Group) -> Vector | None:
+    """[f; m] about W's origin, up to a positive factor, without friction; None where it is not known.
+
+    Not known are: clamps, fingers and supports whose force is not given or has no one line of action, gravity on a part
+    without a centre, and beside clamps without a mass. Loads do not count: the part is seated before they act.
+    """
+    pushing = [contact for contact in group.contacts if contact.role != "locator"]
+    clamps = _clamp_wrench(layout, pushing)
+    if clamps is None:
+        return None
+    if not group.gravity or layout.gravity is None or not np.any(layout.gravity):
+        return clamps if pushing else None
+    part = layout.part
+    if part is None or part.center is None or (pushing and part.mass is None):
+        return None
+    mass = 1.0 if part.mass is None else part.mass
+    return clamps + _wrench(part.pose.points(part.center[None])[0], mass * layout.gravity)
+
+
+def _wrench(point: Point, force: Point) -> Vector:
+    return np.concatenate([force, cross(point[None], force[None])[0]])
+
+
+def _clamp_wrench(layout: Layout, contacts: Sequence[Contact]) -> Vector | None:
+    """The wrench of all contacts that push; zero without any."""
+    elements = {element.name: element for element in layout.elements}
+    plane = 2 if layout.space == "planar" else 3
+    total = np.zeros(3 if plane == 2 else 6)
+    by_element: dict[str, list[Contact]] = {}
+    for contact in contacts:
+        by_element.setdefault(element_name(contact.name), []).append(contact)
+    for name, members in by_element.items():
+        wrench = _push(elements.get(name), members)
+        if wrench is None:
+            return None
+        total = total + wrench
+    return total
+
+
+def _push(element: Element | None, contacts: Sequence[Contact]) -> Vector | None:
+    """Of one element with a preload and one point."""
+    if element is None or element.role != "clamp" or element.preload is None:
+        return None
+    normals = [normal for contact in contacts for normal in contact.normals]
+    # how a pad's force spreads over its corners is not known
+    if len(normals) != 1 or contacts[0].provenance.normal_error > DEFAULT.zero:
+        return None
+    return _wrench(contacts[0].point, -element.preload * unit_normal(normals[0]))
