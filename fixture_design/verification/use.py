@@ -7,12 +7,13 @@ from dataclasses import replace
 
 from fixture_design.layout import Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
+from fixture_design.verification.force_questions import holds_loads, seated
 from fixture_design.verification.found import FoundContacts
 
 UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
 
 #: In the order they are reported.
-USE_QUESTIONS: dict[str, UseQuestion] = {}
+USE_QUESTIONS: dict[str, UseQuestion] = {"seated": seated, "holds_loads": holds_loads}
 
 
 def with_use(
