@@ -85,7 +85,7 @@ MOST_STIFFNESS = 1e15
 #: Loads within this of what can be held are at the limit, and neither held nor not [-]: nobody knows a force better.
 LOAD_TIE = 1e-6
 
-#: Contacts carry a force, and points move, if it is more than this of the largest one [-]: well above what solvers leave.
+#: Contacts carry a force, and points move, if it is more than this of the largest one [-]: above what solvers leave.
 CARRIES = 1e-6
 
 #: Branches of alternatives that are looked at for forces; with more, what the first leave open is undecided.

@@ -1,7 +1,7 @@
 """Seating: whether gravity and the clamps, closed one after the other, press the part against every locator.
 
-First gravity acts alone, then each clamp closes in the order of the file, with those before it. At every step there must
-be a balance, or the part leaves the locators that the motion of the proof leaves; at the end every locator must be
+First gravity acts alone, then each clamp closes in the order of the file, with those before it. At every step there
+must be a balance, or the part leaves the locators that the motion of the proof leaves; at the end every locator must be
 pressed: its normal force is more than zero in all balances. Supports come up later and have no part in it.
 """
 
@@ -44,7 +44,8 @@ def seating(
         return Finding(Answer.UNDECIDED, reason="there are no locators for the part to sit on")
     steps: list[SeatingStep] = []
     for clamp in (None, *preloads):
-        steps.append(_step(contacts, preloads, clamp, weight, locators, tolerances))
+        before = steps[-1].presses if steps else {}
+        steps.append(_step(contacts, preloads, clamp, weight, locators, tuple(before), tolerances))
         if steps[-1].answer is Answer.NO:
             break
     answer, reason = _summed_up(steps)
@@ -81,6 +82,7 @@ def _step(
     clamp: str | None,
     weight: Vector,
     locators: Sequence[str],
+    pressed_before: Sequence[str],
     tolerances: Tolerances,
 ) -> SeatingStep:
     acting = closed_at(contacts, preloads, clamp)
@@ -88,7 +90,7 @@ def _step(
     branches, complete = branches_of(acting, pushing, tolerances)
     settled = settle(branches, complete, weight, tolerances)
     if settled.balance is None:
-        return _unseated(settled, clamp, acting, locators)
+        return _unseated(settled, clamp, acting, locators, pressed_before)
     found = {name: _pressing(branches, name, weight) for name in locators}
     unit = branches[0].unit_for(weight)
     pressed = [n for n, p in found.items() if p.least[0] > LOAD_TIE * unit and len(p.proofs) == len(branches)]
@@ -106,15 +108,18 @@ def _zeroed(force: float, unit: float) -> float:
     return 0.0 if force <= LOAD_TIE * unit else float(force)
 
 
-def _unseated(settled: Settled, clamp: str | None, acting: Sequence[Contact], locators: Sequence[str]) -> SeatingStep:
-    reactions = dict.fromkeys(locators, (0.0, 0.0))
+def _unseated(
+    settled: Settled, clamp: str | None, acting: Sequence[Contact], locators: Sequence[str], before: Sequence[str]
+) -> SeatingStep:
+    """Named are those locators that the part leaves and was pressed against before; without any, all that it leaves."""
     if not settled.against:
         return SeatingStep(clamp, Answer.UNDECIDED, {}, (), (), None, settled.reason)
     leaving = [_left(motion, acting) for motion in settled.against]
-    lifted = tuple(name for name in locators if any(name in names for names in leaving))
+    left = tuple(name for name in locators if any(name in names for names in leaving))
+    lifted = tuple(name for name in left if name in before) or left
     who = "gravity" if clamp is None else clamp
     cause = f"{who} moves the part" + (f" off {', '.join(lifted)}" if lifted else "")
-    return SeatingStep(clamp, Answer.NO, reactions, (), lifted, settled.against[0], cause, settled.against[1:])
+    return SeatingStep(clamp, Answer.NO, {}, (), lifted, settled.against[0], cause, settled.against[1:])
 
 
 def _left(against: Unbalanced, contacts: Sequence[Contact]) -> set[str]:

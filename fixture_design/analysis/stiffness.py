@@ -1,8 +1,8 @@
 """Reactions of elastic contacts: where every contact's stiffness is known, they settle what friction leaves open.
 
 Every contact is a spring of stiffness k along its normals, and across them if it has friction; the fixture is rigid
-otherwise. Under a wrench w the part moves by q with K q = w, K = sum k B^T B, and a contact pushes it with -k B q. It is
-the linear model: nothing lifts or slips, so that a contact may be said to pull; clamps push with their preloads.
+otherwise. Under a wrench w the part moves by q with K q = w, K = sum k B^T B, and a contact pushes it with -k B q. It
+is the linear model: nothing lifts or slips, so that a contact may be said to pull; clamps push with their preloads.
 """
 
 from __future__ import annotations

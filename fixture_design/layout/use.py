@@ -174,7 +174,8 @@ class SeatingStep:
     Attributes:
         clamp: the one just closed; None for gravity alone.
         answer: whether every locator is pressed.
-        reactions: for each locator (least, largest) normal force over all balances [N], summed over its normals.
+        reactions: for each locator (least, largest) normal force over all balances [N], summed over its normals; bounds
+            of these, and empty where no balance is shown.
         idle: locators that nothing presses.  lifted: locators that the part leaves: no balance has them pressed.
         proof: that a balance exists, or that none does.
         cause: the clamp that unseats, and why, in words; None where nothing does.
