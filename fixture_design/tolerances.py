@@ -70,6 +70,27 @@ SMALLEST_PART = 1e-9
 #: Largest coefficient of friction [-]: nothing rubs like that, and squares of it keep their digits beside 1.
 MOST_FRICTION = 1e3
 
+#: Forces [N] and moments [N m] above this are mistakes, a thousand times what any press pushes with.
+MOST_FORCE = 1e12
+
+#: Parts heavier than this are mistakes [kg].
+MOST_MASS = 1e9
+
+#: Accelerations above this are mistakes [m/s^2].
+MOST_GRAVITY = 1e6
+
+#: Stiffer contacts than this are mistakes [N/m]: steel cubes of a kilometre.
+MOST_STIFFNESS = 1e15
+
+#: Loads within this of what can be held are at the limit, and neither held nor not [-]: nobody knows a force better.
+LOAD_TIE = 1e-6
+
+#: Contacts carry a force, and points move, if it is more than this of the largest one [-]: above what solvers leave.
+CARRIES = 1e-6
+
+#: Branches of alternatives that are looked at for forces; with more, what the first leave open is undecided.
+MOST_FORCE_BRANCHES = 64
+
 #: Vertices closer than this are one vertex, relative to the size of the part [-].
 MERGE_VERTICES = 1e-9
 

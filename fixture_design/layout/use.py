@@ -8,7 +8,7 @@ tips: and a moment about n). All wrenches are [f; m] on the part, about W's orig
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from fixture_design.arrays import Point, Points, Rows, Vector
@@ -123,12 +123,17 @@ class Unbalanced:
 
     For all forces that the contacts may have, wrench . q exceeds what they take back: wrench . q - R(q) = ``surplus``
     > 0, R(q) the sum of N (n . v + friction |[v_t; c w_n]|) over clamps with N their preload. For all other contacts
-    that bracket is <= 0, so that they resist nothing.
+    that bracket is <= 0, so that they resist nothing. Where normals may be off by e, the bracket has
+    e (hypot(1, friction) |v| + friction c |w|) more.
+
+    Attributes:
+        choice: the alternatives it is about, as (contact, clause, alternative); of clauses not named, any.
     """
 
     wrench: Vector
     motion: Vector
     surplus: float
+    choice: tuple[tuple[str, int, int], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,8 +147,9 @@ class LoadVerdict:
             None where it is not held at any factor.
         needed: the smallest factor that can be held; 0 where the load is not needed to hold the part.
         proof: at factor 1.
-        first: contacts that slip or lift first beyond the reserve, with what they do.
+        first: elements that slip or lift first beyond the reserve, with what they do.
         reason: why it is undecided.
+        others: with a motion as proof, those of the branches that it is not about.
     """
 
     load: str
@@ -154,6 +160,7 @@ class LoadVerdict:
     proof: Balance | Unbalanced | None
     first: tuple[tuple[str, Literal["slips", "lifts"]], ...] = ()
     reason: str | None = None
+    others: tuple[Unbalanced, ...] = ()
 
 
 def severity(load: LoadVerdict) -> tuple[int, float]:
@@ -169,7 +176,7 @@ class LoadsHeld:
     Attributes:
         loads: one a load, and one a point of a load path, in file order.
         worst: index into ``loads`` of the one with the least reserve, or that fails.
-        preloads: for each contact that pushes with a given force, that force [N].
+        preloads: for each element that pushes with a given force, that force [N]; its contacts share it.
         least_preloads: for each clamp the preload of the smallest set (by sum) that holds everything [N], within its
             limits; None where no preloads do, or there is no clamp whose preload may be chosen.
         determinate: whether friction leaves the reactions determined (or a stiffness makes them so).
@@ -191,10 +198,15 @@ class SeatingStep:
     Attributes:
         clamp: the one just closed; None for gravity alone.
         answer: whether every locator is pressed.
-        reactions: for each locator (least, largest) normal force over all balances [N], summed over its normals.
+        reactions: for each locator (least, largest) normal force over all balances [N], summed over its normals; bounds
+            of these, and empty where no balance is shown.
         idle: locators that nothing presses.  lifted: locators that the part leaves: no balance has them pressed.
         proof: that a balance exists, or that none does.
         cause: the clamp that unseats, and why, in words; None where nothing does.
+        others: with a motion as proof, those of the branches that it is not about.
+        presses: for each locator that is pressed, motions q for all branches that say so: all others resist nothing
+            (n . v + friction |[v_t; c w_n]| <= 0), it itself at most 1 a newton; then it is pressed with wrench . q -
+            R(q) at least.
     """
 
     clamp: str | None
@@ -204,6 +216,8 @@ class SeatingStep:
     lifted: tuple[str, ...]
     proof: Balance | Unbalanced | None
     cause: str | None = None
+    others: tuple[Unbalanced, ...] = ()
+    presses: Mapping[str, tuple[Unbalanced, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from fixture_design.analysis import accurate
 from fixture_design.layout import Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
+from fixture_design.verification.force_questions import holds_loads, seated
 from fixture_design.verification.found import FoundContacts
 
 UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
@@ -18,7 +19,7 @@ def _accurate(layout: Layout, group: Group, found: FoundContacts, tolerances: To
 
 
 #: In the order they are reported.
-USE_QUESTIONS: dict[str, UseQuestion] = {"accurate": _accurate}
+USE_QUESTIONS: dict[str, UseQuestion] = {"accurate": _accurate, "seated": seated, "holds_loads": holds_loads}
 
 
 def with_use(

@@ -1,0 +1,55 @@
+"""What acts on the part besides contacts: gravity, loads, and what clamps push with; or why that is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fixture_design.arrays import Point, Vector
+from fixture_design.contacts import Contact, cross
+from fixture_design.layout import Group, Layout, Load, element_name
+
+
+@dataclass(frozen=True, eq=False)
+class LoadRow:
+    """A wrench [f; m] about W's origin [N, N m] that acts on the part: a load, or one point of a load path."""
+
+    load: str
+    row: int | None
+    wrench: Vector
+
+
+def gravity_wrench(layout: Layout, group: Group) -> Vector | str:
+    """The weight m g in the centre of mass, about W's origin; zero without gravity; a reason where it is not known."""
+    plane = 2 if layout.space == "planar" else 3
+    if not group.gravity or layout.gravity is None or not np.any(layout.gravity):
+        return np.zeros(3 * (plane - 1))
+    part = layout.part
+    if part is None or part.mass is None:
+        return "mass unknown: there is gravity, and `part` has no `mass`"
+    if part.center is None:
+        return "center of mass unknown: there is gravity, and `part` has no `center`"
+    force = part.mass * np.asarray(layout.gravity, dtype=np.float64)
+    return wrench_at(part.pose.points(np.asarray(part.center)[None])[0], force)
+
+
+def wrench_at(point: Point, force: Point, moment: Vector | None = None) -> Vector:
+    """[f; p X f + m]: a force in a point, and a free moment, about the origin."""
+    turning = cross(np.asarray(point)[None], np.asarray(force)[None])[0]
+    return np.concatenate([force, turning if moment is None else turning + moment])
+
+
+def load_wrench(load: Load, plane: int) -> Vector:
+    """The wrench of a load that is no path, about W's origin."""
+    force = np.zeros(plane) if load.force is None else np.asarray(load.force, dtype=np.float64)
+    point = np.zeros(plane) if load.point is None else np.asarray(load.point, dtype=np.float64)
+    return wrench_at(point, force, load.moment)
+
+
+def preloads_of(layout: Layout, contacts: Sequence[Contact]) -> dict[str, float]:
+    """What those clamps push with that have a preload and touch the part here [N], in file order."""
+    touching = {element_name(contact.name) for contact in contacts if contact.role == "clamp"}
+    known = [element for element in layout.elements if element.name in touching and element.role == "clamp"]
+    return {element.name: float(element.preload) for element in known if element.preload is not None}

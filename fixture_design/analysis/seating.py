@@ -1,0 +1,175 @@
+"""Seating: whether gravity and the clamps, closed one after the other, press the part against every locator.
+
+First gravity acts alone, then each clamp closes in the order of the file, with those before it. At every step there
+must be a balance, or the part leaves the locators that the motion of the proof leaves; at the end every locator must be
+pressed: its normal force is more than zero in all balances. Supports come up later and have no part in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fixture_design.analysis.balancing import ForceBranch, Settled, branches_of, gained, most_resistance, settle
+from fixture_design.analysis.contact_forces import ContactForces, ForceCones
+from fixture_design.analysis.loads import largest_factors
+from fixture_design.arrays import Vector
+from fixture_design.contacts import Contact, motion_about_origin, scale_of, unit_normal, velocity
+from fixture_design.layout import Answer, Finding, Seating, SeatingStep, Unbalanced, element_name
+from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, Tolerances
+
+
+@dataclass(frozen=True, eq=False)
+class Pressing:
+    """Brackets of the normal force of one locator over all balances [N], with motions that prove the least."""
+
+    least: tuple[float, float]
+    largest: tuple[float, float]
+    proofs: tuple[Unbalanced, ...]
+
+
+def seating(
+    contacts: Sequence[Contact], preloads: Mapping[str, float], weight: Vector, tolerances: Tolerances = DEFAULT
+) -> Finding:
+    """Whether the part sits on its locators once all clamps are closed.
+
+    Args:
+        preloads: of every clamp that closes [N], in the order in which they do.
+        weight: what acts besides, a wrench about W's origin.
+    """
+    locators = list(dict.fromkeys(element_name(c.name) for c in contacts if c.role == "locator"))
+    if not locators:
+        return Finding(Answer.UNDECIDED, reason="there are no locators for the part to sit on")
+    steps: list[SeatingStep] = []
+    for clamp in (None, *preloads):
+        before = steps[-1].presses if steps else {}
+        steps.append(_step(contacts, preloads, clamp, weight, locators, tuple(before), tolerances))
+        if steps[-1].answer is Answer.NO:
+            break
+    answer, reason = _summed_up(steps)
+    return Finding(answer, reason=reason, use=Seating(tuple(steps), dict(preloads)))
+
+
+def closed_at(contacts: Sequence[Contact], preloads: Mapping[str, float], clamp: str | None) -> list[Contact]:
+    """The contacts that may push at a step: no supports, and only the clamps that are closed then."""
+    order = [None, *preloads]
+    closed = set(order[1 : order.index(clamp) + 1])
+    return [c for c in contacts if c.role != "support" and (c.role != "clamp" or element_name(c.name) in closed)]
+
+
+def _summed_up(steps: Sequence[SeatingStep]) -> tuple[Answer, str | None]:
+    last = steps[-1]
+    if last.answer is Answer.NO:
+        return Answer.NO, None
+    if unproven := next((step for step in steps if step.proof is None), None):
+        return Answer.UNDECIDED, f"{_when(unproven)}: {unproven.cause}"
+    if last.answer is Answer.YES:
+        return Answer.YES, None
+    if last.idle:
+        return Answer.UNDECIDED, f"nothing presses the part against {', '.join(last.idle)}"
+    return Answer.UNDECIDED, f"{_when(last)}: {last.cause}"
+
+
+def _when(step: SeatingStep) -> str:
+    return "under gravity" if step.clamp is None else f"with {step.clamp} closed"
+
+
+def _step(
+    contacts: Sequence[Contact],
+    preloads: Mapping[str, float],
+    clamp: str | None,
+    weight: Vector,
+    locators: Sequence[str],
+    pressed_before: Sequence[str],
+    tolerances: Tolerances,
+) -> SeatingStep:
+    acting = closed_at(contacts, preloads, clamp)
+    pushing = {name: preloads[name] for name in {element_name(c.name): 0 for c in acting} if name in preloads}
+    branches, complete = branches_of(acting, pushing, tolerances)
+    settled = settle(branches, complete, weight, tolerances)
+    if settled.balance is None:
+        return _unseated(settled, clamp, acting, locators, pressed_before)
+    found = {name: _pressing(branches, name, weight) for name in locators}
+    unit = branches[0].unit_for(weight)
+    pressed = [n for n, p in found.items() if p.least[0] > LOAD_TIE * unit and len(p.proofs) == len(branches)]
+    idle = tuple(n for n, p in found.items() if p.largest[1] <= LOAD_TIE * unit)
+    reactions = {name: (_zeroed(p.least[0], unit), _zeroed(p.largest[1], unit)) for name, p in found.items()}
+    presses = {name: found[name].proofs for name in pressed}
+    doubtful = [name for name in locators if name not in pressed and name not in idle]
+    cause = f"friction leaves open whether the part is pressed against {', '.join(doubtful)}" if doubtful else None
+    answer = Answer.YES if complete and len(pressed) == len(locators) else Answer.UNDECIDED
+    return SeatingStep(clamp, answer, reactions, idle, (), settled.balance, cause, (), presses)
+
+
+def _zeroed(force: float, unit: float) -> float:
+    """A normal force, zero if that is within rounding of the forces that there are."""
+    return 0.0 if force <= LOAD_TIE * unit else float(force)
+
+
+def _unseated(
+    settled: Settled, clamp: str | None, acting: Sequence[Contact], locators: Sequence[str], before: Sequence[str]
+) -> SeatingStep:
+    """Named are those locators that the part leaves and was pressed against before; without any, all that it leaves."""
+    if not settled.against:
+        return SeatingStep(clamp, Answer.UNDECIDED, {}, (), (), None, settled.reason)
+    leaving = [_left(motion, acting) for motion in settled.against]
+    left = tuple(name for name in locators if any(name in names for names in leaving))
+    lifted = tuple(name for name in left if name in before) or left
+    who = "gravity" if clamp is None else clamp
+    cause = f"{who} moves the part" + (f" off {', '.join(lifted)}" if lifted else "")
+    return SeatingStep(clamp, Answer.NO, {}, (), lifted, settled.against[0], cause, settled.against[1:])
+
+
+def _left(against: Unbalanced, contacts: Sequence[Contact]) -> set[str]:
+    """Elements of which all contacts are left by a motion, or slid over in the leaving of others."""
+    scale = scale_of(contacts)
+    speeds = {c.name: velocity(against.motion, c.point) for c in contacts}
+    fastest = max(float(np.linalg.norm(v)) for v in speeds.values()) or scale.length
+    along = {c.name: max(float(unit_normal(n) @ speeds[c.name]) for n in c.normals) for c in contacts}
+    names = {element_name(c.name) for c in contacts}
+    return {
+        name
+        for name in names
+        if all(along[c.name] < -CARRIES * fastest for c in contacts if element_name(c.name) == name)
+    }
+
+
+def _pressing(branches: Sequence[ForceBranch], name: str, weight: Vector) -> Pressing:
+    """Over all branches, since nothing says which one the part takes."""
+    found = [_pressing_in(branch, name, weight) for branch in branches]
+    proofs = tuple(proof for _, _, proof in found if proof is not None)
+    least = min(low for low, _, _ in found)
+    return Pressing((least, least), (0.0, max(high for _, high, _ in found)), proofs)
+
+
+def _pressing_in(branch: ForceBranch, name: str, weight: Vector) -> tuple[float, float, Unbalanced | None]:
+    """Least and largest sum of N over a locator's cones, as the factor on one more row: sum N - a = 0."""
+    forces = branch.outer.in_units_of(branch.unit_for(weight))
+    row = np.zeros(forces.cones.maps.shape[1])
+    owners = [element_name(forces.contacts[index].name) == name for index, _ in forces.owners]
+    row[forces.cones.starts[np.array(owners)]] = 1.0
+    cones = ForceCones(np.vstack([forces.cones.maps, row]), forces.cones.sizes, forces.cones.heads)
+    fixed = np.append(forces.applied(weight) + forces.given, 0.0)
+    last = np.zeros(len(fixed))
+    last[-1] = 1.0
+    found = largest_factors(cones, fixed, np.array([last, -last]))
+    # the first load takes N away from the sum, so that its factor is -sum N
+    proof = _proof(branch, forces, found.motions[0], name, weight)
+    return (0.0 if proof is None else proof.surplus), float(found.upper[1]) * forces.unit, proof
+
+
+def _proof(branch: ForceBranch, forces: ContactForces, motion: Vector, name: str, weight: Vector) -> Unbalanced | None:
+    """The motion as a proof of the least force, scaled so that the locator resists it by at most 1 a newton."""
+    motion = motion[: forces.contacts[0].dimension]
+    if not np.any(motion):
+        return None
+    world = motion_about_origin(motion, forces.scale.reference, forces.scale.length)
+    owners = [(forces.contacts[index], normal) for index, normal in forces.owners]
+    resisting = [most_resistance(c, normal, world) for c, normal in owners if element_name(c.name) == name]
+    most = max(resisting, default=0.0)
+    if most <= WITNESS:
+        return None
+    net = gained(forces, motion / most, forces.applied(weight)[: len(motion)], spared=name) * forces.unit
+    return Unbalanced(weight, world / most, net, branch.choice) if net > 0 else None
