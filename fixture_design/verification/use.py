@@ -8,11 +8,12 @@ from dataclasses import replace
 from fixture_design.layout import Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
 from fixture_design.verification.found import FoundContacts
+from fixture_design.verification.loading import loadable
 
 UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
 
 #: In the order they are reported.
-USE_QUESTIONS: dict[str, UseQuestion] = {}
+USE_QUESTIONS: dict[str, UseQuestion] = {"loadable": loadable}
 
 
 def with_use(

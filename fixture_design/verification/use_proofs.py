@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 
 from fixture_design.contacts import Contact
 from fixture_design.layout import Finding
+from fixture_design.verification.loading_proofs import loadable_fault
 
 #: What is wrong with a finding about these contacts of its group; None if nothing is.
 UseProof = Callable[[Finding, Sequence[Contact]], str | None]
 
-USE_PROOFS: dict[str, UseProof] = {}
+USE_PROOFS: dict[str, UseProof] = {"loadable": loadable_fault}
