@@ -3,6 +3,7 @@
 Drake, trimesh and shapely are imported when something is read or measured, not with this package.
 """
 
+from fixture_design.geometry.clear_way import Meeting, Surroundings
 from fixture_design.geometry.contact import contact_of, contacts_of_element, polygon_contact, polygon_contacts
 from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
 from fixture_design.geometry.facets import Facet
@@ -10,6 +11,7 @@ from fixture_design.geometry.load import load_part
 from fixture_design.geometry.mass import Mass, mass_of
 from fixture_design.geometry.mesh_file import unreadable
 from fixture_design.geometry.part import PartGeometry
+from fixture_design.geometry.planar_way import PlanarSurroundings
 from fixture_design.geometry.polygon import Polygon, polygon_of
 from fixture_design.geometry.polygon_sampling import given_polygon_points, sample_polygon
 from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
@@ -23,15 +25,18 @@ __all__ = [
     "Facet",
     "GeometryContacts",
     "Mass",
+    "Meeting",
     "Overlap",
     "PartGeometry",
     "PlacedBody",
+    "PlanarSurroundings",
     "Polygon",
     "PosedScene",
     "SamplingRules",
     "Scene",
     "Slide",
     "SurfacePoints",
+    "Surroundings",
     "contact_of",
     "contacts_of_element",
     "contacts_of_elements",

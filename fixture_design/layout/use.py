@@ -230,11 +230,15 @@ class Seating:
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
-    """What is in the way: an element or body, after how much of the way [m], at which point in W."""
+    """What is in the way: an element, body or contact, after how much of the way [m], at which point in W.
+
+    ``direction``: of the way, in W, of length one; None where that is said elsewhere.
+    """
 
     name: str
     after: float
     point: Point
+    direction: Point | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,14 +248,19 @@ class StraightWays:
     Attributes:
         contacts: that were asked to let it out; ``open``: contacts that were not, since they are open then (clamps,
             supports, pins with clearance).
-        spans, lines: generators of the cone of directions in W, shapes (k, p); together empty where there is none.
-        direction: the best of them, of length one; None where there is none.
+        spans, lines: generators of the cone of directions in W, shapes (k, p); together empty where there is none. Of
+            a union of cones, of the one that has ``direction``, or else the best one.
+        direction: the way out, or where all ways tried are blocked the best of them, of length one; None where there
+            is none.
         leaving: the least -n . direction over the contacts' unit normals; 0 where it slides along some [-].
         slides: contacts that it slides along.
         length: of the way that was looked at [m]; None where there is no geometry to look at.
-        against: elements and bodies it was checked against.
+        against: elements, bodies and contacts it was checked against.
         obstacle: the first thing in the best of the ways, where every way tried is blocked.
-        weights: where there is no direction at all, weights >= 0 on unit normals, one a normal, that say so.
+        weights: where there is no direction at all, weights >= 0 on unit normals, one a normal, that say so: they
+            balance with rank p. Where there is a direction and no other but its opposite, likewise with rank p - 1.
+        branches: the same where alternatives need several sets of weights, one set for each branch that needs one.
+        tried: what is in the way in each direction that was tried and is blocked, one each.
     """
 
     contacts: tuple[str, ...]
@@ -265,3 +274,5 @@ class StraightWays:
     against: tuple[str, ...] = ()
     obstacle: Obstacle | None = None
     weights: Mapping[str, tuple[float, ...]] | None = None
+    branches: tuple[Mapping[str, tuple[float, ...]], ...] = ()
+    tried: tuple[Obstacle, ...] = ()

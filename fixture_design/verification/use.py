@@ -10,6 +10,7 @@ from fixture_design.layout import Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
 from fixture_design.verification.force_questions import holds_loads, seated
 from fixture_design.verification.found import FoundContacts
+from fixture_design.verification.loading import loadable
 
 UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
 
@@ -19,7 +20,12 @@ def _accurate(layout: Layout, group: Group, found: FoundContacts, tolerances: To
 
 
 #: In the order they are reported.
-USE_QUESTIONS: dict[str, UseQuestion] = {"accurate": _accurate, "seated": seated, "holds_loads": holds_loads}
+USE_QUESTIONS: dict[str, UseQuestion] = {
+    "loadable": loadable,
+    "accurate": _accurate,
+    "seated": seated,
+    "holds_loads": holds_loads,
+}
 
 
 def with_use(

@@ -38,8 +38,8 @@ def test_one_layout(command: Callable, tmp_path: Path, name: str) -> None:
 
 def test_what_is_not_evaluated_is_named(command: Callable, tmp_path: Path) -> None:
     ran = command("verify", written(tmp_path, "x", UNDECIDED))
-    assert "required of locators: loadable: undecided" in ran.out
-    assert "note: locators: loadable is not evaluated" in ran.out
+    assert "required of locators: seated: undecided" in ran.out
+    assert "note: locators: seated is not evaluated" in ran.out
 
 
 @pytest.mark.parametrize(
