@@ -19,8 +19,8 @@ from fixture_design.geometry.barriers import BallBarrier, Barrier, PointBarrier,
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.segments import Segments, segment_distances
 from fixture_design.geometry.separation import Solid, separation
-from fixture_design.geometry.shadows import Faces, Frame, nearest_meeting, region_above
-from fixture_design.geometry.shapes import Corners, Vector3
+from fixture_design.geometry.shadows import Faces, Frame, Triples, nearest_meeting, region_above
+from fixture_design.geometry.shapes import Vector3
 from fixture_design.layout import Layout, Obstacle, Pose
 
 #: Columns around a point that must all be passed over before it is in the way.
@@ -80,7 +80,7 @@ class Surroundings:
             return None
         return min(found, key=lambda meeting: (not meeting.certain, meeting.obstacle.after))
 
-    def _with(self, barrier: Barrier, frame: Frame, corners: Corners, part: Faces) -> Meeting | None:
+    def _with(self, barrier: Barrier, frame: Frame, corners: Triples, part: Faces) -> Meeting | None:
         match barrier:
             case PointBarrier():
                 met = self._point(barrier, frame, corners, part)
@@ -98,7 +98,7 @@ class Surroundings:
         return Meeting(Obstacle(barrier.name, after, point, self.X_WP.vectors(frame.axes[2:])[0]), certain)
 
     def _point(
-        self, barrier: PointBarrier, frame: Frame, corners: Corners, part: Faces
+        self, barrier: PointBarrier, frame: Frame, corners: Triples, part: Faces
     ) -> tuple[float, Vector3] | None:
         seen, allowed = frame.seen(barrier.point), self.gap + barrier.depth
         angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
@@ -139,7 +139,7 @@ class Surroundings:
         return min(meetings, key=lambda meeting: meeting[0]) if meetings else None
 
     def _solid(
-        self, barrier: SolidBarrier, frame: Frame, corners: Corners, part: Faces
+        self, barrier: SolidBarrier, frame: Frame, corners: Triples, part: Faces
     ) -> tuple[float, Vector3] | None:
         import shapely
 
@@ -172,7 +172,7 @@ class Surroundings:
         return Solid.of(self.geometry)
 
     @cached_property
-    def _corners(self) -> Corners:
+    def _corners(self) -> Triples:
         return self.geometry.vertices[self.geometry.triangles]
 
     @cached_property
