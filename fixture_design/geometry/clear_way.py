@@ -2,7 +2,8 @@
 
 Exact for bodies, pads, lines and pins as shapes (`shadows`) and for balls (their distance to the part's edges and
 faces); a point is in the way if the part passes over it and all around it. What touches or overlaps by no more than at
-the start, and the surface gap, is not in the way. The way has no end: out is out of the fixture altogether.
+the start, and the surface gap, is not in the way. Facets count as they are: what they leave of a round surface is not
+seen. The way has no end: out is out of the fixture altogether.
 """
 
 from __future__ import annotations
@@ -37,6 +38,11 @@ class Meeting:
     certain: bool
 
 
+def first_of(meetings: Sequence[Meeting]) -> Meeting | None:
+    """The first on the way, of the certain ones if there are any."""
+    return min(meetings, key=lambda m: (not m.certain, m.obstacle.after)) if meetings else None
+
+
 @dataclass(frozen=True, eq=False)
 class Surroundings:
     """A spatial part and what stands around it.
@@ -54,7 +60,8 @@ class Surroundings:
     def of(cls, layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact]) -> Surroundings:
         """See `barriers_of`; a surface gap of zero is what the part's edges are known to."""
         pose = Pose.identity(3) if layout.part is None else layout.part.pose
-        return cls(geometry, barriers_of(layout, geometry, contacts), pose, max(layout.surface_gap, geometry.on_edge))
+        gap = max(layout.surface_gap, geometry.on_edge)
+        return cls(geometry, barriers_of(layout, geometry, contacts, gap), pose, gap)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -66,8 +73,11 @@ class Surroundings:
         highest = max((_reach(barrier, t) for barrier in self.barriers), default=-np.inf)
         return max(0.0, highest - float((self.geometry.vertices @ t).min()))
 
-    def meeting(self, direction: Point) -> Meeting | None:
+    def meeting(self, direction: Point, any_one: bool = False) -> Meeting | None:
         """What is first in the way along a unit direction in W, a certain one where there is one; None if nothing is.
+
+        Args:
+            any_one: the first one found will do, points and balls before bodies.
 
         Raises:
             GeometryError: the geometry engine has no answer.
@@ -75,10 +85,10 @@ class Surroundings:
         frame = Frame.along(self._in_part(direction))
         corners = frame.seen(self._corners)
         part = Faces.facing(corners, False)
-        found = [m for m in (self._with(barrier, frame, corners, part) for barrier in self.barriers) if m is not None]
-        if not found:
-            return None
-        return min(found, key=lambda meeting: (not meeting.certain, meeting.obstacle.after))
+        quick_first = sorted(self.barriers, key=lambda barrier: isinstance(barrier, SolidBarrier))
+        meetings = (self._with(barrier, frame, corners, part) for barrier in quick_first)
+        found = (meeting for meeting in meetings if meeting is not None)
+        return next(found, None) if any_one else first_of(list(found))
 
     def _with(self, barrier: Barrier, frame: Frame, corners: Triples, part: Faces) -> Meeting | None:
         match barrier:
@@ -86,7 +96,7 @@ class Surroundings:
                 met = self._point(barrier, frame, corners, part)
                 certain = barrier.depth <= self.gap
             case BallBarrier():
-                met = self._ball(barrier, frame, part)
+                met = self._ball(barrier, frame, corners)
                 certain = barrier.depth <= self.gap
             case SolidBarrier():
                 met = self._solid(barrier, frame, corners, part)
@@ -101,6 +111,8 @@ class Surroundings:
         self, barrier: PointBarrier, frame: Frame, corners: Triples, part: Faces
     ) -> tuple[float, Vector3] | None:
         seen, allowed = frame.seen(barrier.point), self.gap + barrier.depth
+        if barrier.depth > self.gap and not barrier.measured:
+            return 0.0, seen
         angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
         columns = seen[:2] + allowed * np.vstack([[0.0, 0.0], np.column_stack([np.cos(angles), np.sin(angles)])])
         lower = _near(part, seen, allowed)
@@ -113,7 +125,7 @@ class Surroundings:
         ways = seen[2] - tops.heights(face, np.tile(seen[:2], (len(face), 1)))
         return float(ways[ways >= 0].min(initial=np.inf)) if (ways >= 0).any() else 0.0, seen
 
-    def _ball(self, barrier: BallBarrier, frame: Frame, part: Faces) -> tuple[float, Vector3] | None:
+    def _ball(self, barrier: BallBarrier, frame: Frame, corners: Triples) -> tuple[float, Vector3] | None:
         """The ball goes the other way: how near its centre comes to the part's edges, or through a face."""
         center = frame.seen(barrier.center)
         least = barrier.radius - self.gap - barrier.depth
@@ -131,9 +143,10 @@ class Surroundings:
                 rise = float(np.sqrt(max(0.0, barrier.radius**2 - float(off[:2] @ off[:2]))))
                 after = max(0.0, -float(off[2]) - rise)
                 meetings.append((after, point + np.array([0.0, 0.0, after])))
-        column, face = part.over(center[None, :2])
-        heights = part.heights(face, np.tile(center[:2], (len(column), 1)))
-        for height in heights[heights < center[2] - barrier.radius].tolist():
+        ahead = _near(Faces.facing(corners, True), center, 0.0)
+        column, face = ahead.over(center[None, :2])
+        heights = ahead.heights(face, np.tile(center[:2], (len(column), 1)))
+        for height in heights[heights < center[2] - least].tolist():
             after = max(0.0, float(center[2] - height) - barrier.radius)
             meetings.append((after, np.array([center[0], center[1], height + after])))
         return min(meetings, key=lambda meeting: meeting[0]) if meetings else None
