@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 
 from fixture_design.contacts import Contact, Provenance, Role
 from fixture_design.errors import InputError
 from fixture_design.io import read_layout
 from fixture_design.io.verdict_record import verdict_to_dict
+from fixture_design.io.verdict_schema import VerdictRecord
 from fixture_design.layout import (
     Answer,
     Body,
@@ -39,13 +42,14 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 BRACKET = REPOSITORY / "urdf" / "bracket" / "bracket.layout.yaml"
 X, Y, Z = np.eye(3)
 MM = 1e-3
+VERDICTS = TypeAdapter(VerdictRecord)
 LOADABLE = {"locators": ("loadable",), "all": ("loadable",)}
 
 
 def judged(layout: Layout) -> Verdict:
     verdict = verify(replace(layout, require=LOADABLE))
     assert check(verdict) == []
-    verdict_to_dict(verdict)
+    VERDICTS.validate_json(json.dumps(verdict_to_dict(verdict)))
     return verdict
 
 
@@ -333,7 +337,7 @@ def test_a_planar_tee_in_its_slot() -> None:
     assert obstacle.after == pytest.approx(3 * MM, abs=2e-5)
 
 
-@pytest.mark.parametrize("file", ["featuretype", "robotiq_adapter"])
+@pytest.mark.parametrize("file", ["featuretype", pytest.param("robotiq_adapter", marks=pytest.mark.slow)])
 def test_real_parts(file: str) -> None:
     shared("SOURCES.md")
     layout = read_layout(REPOSITORY / "tests" / "layouts" / f"{file}.layout.yaml")
@@ -372,6 +376,20 @@ def test_a_shape_in_other_units_and_turned(tmp_path: Path) -> None:
         found = finding(layout)
         assert found.answer is Answer.YES
         np.testing.assert_allclose(ways_of(found).direction @ turned.rotation, [1, 0, 1] / np.sqrt(2), atol=0.35)
+
+
+@pytest.mark.parametrize(("shaft", "bore"), [(24, 32)])
+def test_a_shaft_in_a_bore_of_other_facets(tmp_path: Path, shaft: int, bore: int) -> None:
+    """Facets of the two cut into each other from the start; along the axis that is no obstacle, and a collar is one."""
+    square = [[-0.02, -0.02], [0.02, -0.02], [0.02, 0.02], [-0.02, 0.02]]
+    ring = mesh_body(tmp_path, "ring", prism(square, 0.02, [circle(0.005, bore)]))
+    part = mesh_part(tmp_path, prism(circle(0.005, shaft), 0.04))
+    layout = Layout("shaft", part=part, bodies=(ring,))
+    found = finding(layout)
+    assert found.answer is Answer.YES
+    assert abs(ways_of(found).direction @ Z) == pytest.approx(1, abs=1e-9)
+    lids = [mesh_body(tmp_path, f"lid{k}", box(0.04, 0.04, 0.01), at=(0, 0, z)) for k, z in enumerate((-0.03, 0.06))]
+    assert finding(replace(layout, bodies=(ring, *lids))).answer is not Answer.YES
 
 
 @pytest.mark.parametrize("space", ["spatial", "planar"])
