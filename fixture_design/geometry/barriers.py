@@ -124,8 +124,8 @@ def _of_element(
             along = unit_normal(along - (along @ normal) * normal)
             across, out = cross_products(normal, along), _THICK * gap * normal
             if isinstance(tip, PadTip):
-                return _solid(element.name, geometry, *_plate(middle, along * tip.width, across * tip.height, out))
-            return _solid(element.name, geometry, *_edge(middle, along * tip.length, across * _THICK * gap, out))
+                return _solid(element.name, geometry, _plate(middle, along * tip.width, across * tip.height, out), gap)
+            return _solid(element.name, geometry, _edge(middle, along * tip.length, across * _THICK * gap, out), gap)
         case PinTip():
             axis = np.array([0.0, 0.0, 1.0]) if element.axis is None else np.asarray(element.axis, dtype=np.float64)
             return _pin(element.name, geometry, at, unit_normal(X_PW.vectors(axis[None])[0]), tip.diameter / 2, gap)
@@ -139,10 +139,14 @@ def _of_point(name: str, contact: Contact, geometry: PartGeometry, X_WP: Pose) -
     return PointBarrier(name, point, depth, contact.distance is not None)
 
 
-def _solid(name: str, geometry: PartGeometry, points: Points, triangles: Triangles, here: int) -> SolidBarrier:
-    """``here``: as many of the first points lie on the part."""
-    depth = max(0.0, -float(geometry.surface.distances(points[:here]).min()))
-    return SolidBarrier(name, points[triangles], depth)
+def _solid(name: str, geometry: PartGeometry, shape: tuple[Points, Triangles, int], gap: float) -> SolidBarrier:
+    """A tip's shape; the number says how many of its first points lie on the part.
+
+    Where the others are inside the part, it has less room than the thickness assumed.
+    """
+    points, triangles, here = shape
+    depths = -geometry.surface.distances(points)
+    return SolidBarrier(name, points[triangles], max(0.0, float(depths[:here].max())), assumed=bool(depths.max() > gap))
 
 
 def _plate(middle: Point, width: Point, height: Point, out: Point) -> tuple[Points, Triangles, int]:
