@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Point, cross_products
+from fixture_design.arrays import Point, Points, cross_products
 from fixture_design.contacts import Contact, tangents, unit_normal
 from fixture_design.geometry.bodies import placed_geometry
 from fixture_design.geometry.part import PartGeometry
-from fixture_design.geometry.shapes import Corners, Directions, Vector3
+from fixture_design.geometry.shapes import Corners, Triangles, Vector3
 from fixture_design.layout import Element, Layout, LineTip, PadTip, PinTip, Pose, SphereTip, element_name
 
 #: Roles of what is in its place while the part is loaded; clamps and supports are away.
@@ -35,11 +35,18 @@ _POKES = 1.5
 
 @dataclass(frozen=True, eq=False)
 class PointBarrier:
-    """A point; ``depth``: how far inside the part it is at the start [m]."""
+    """A point.
+
+    Attributes:
+        depth: how far inside the part it is at the start [m].
+        measured: whether the part's surface was found there, so that the depth is that of its facets; a contact that
+            was given outright may be anywhere.
+    """
 
     name: str
     point: Vector3
     depth: float
+    measured: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +79,12 @@ class SolidBarrier:
 Barrier = PointBarrier | BallBarrier | SolidBarrier
 
 
-def barriers_of(layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact]) -> tuple[Barrier, ...]:
+def barriers_of(layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact], gap: float) -> tuple[Barrier, ...]:
     """Everything of a spatial layout that stands while its part is loaded, in P.
 
     Args:
         geometry: of the part.  contacts: all that the layout has, in W.
+        gap: how well surfaces are known, > 0 [m].
 
     Raises:
         InputError: a body's file cannot be used.
@@ -87,7 +95,7 @@ def barriers_of(layout: Layout, geometry: PartGeometry, contacts: Sequence[Conta
     for element in layout.elements:
         mine = [contact for contact in contacts if element_name(contact.name) == element.name]
         if element.role in STANDING and mine:
-            found.append(_of_element(element, mine, geometry, X_WP, layout.surface_gap))
+            found.append(_of_element(element, mine, geometry, X_WP, gap))
     found += [_of_point(contact.name, contact, geometry, X_WP) for contact in layout.contacts
               if contact.role in STANDING]  # fmt: skip
     for body in layout.bodies:
@@ -116,8 +124,8 @@ def _of_element(
             along = unit_normal(along - (along @ normal) * normal)
             across, out = cross_products(normal, along), _THICK * gap * normal
             if isinstance(tip, PadTip):
-                return _solid(element.name, geometry, *_plate(middle, along * tip.width, across * tip.height, out))
-            return _solid(element.name, geometry, *_edge(middle, along * tip.length, across * _THICK * gap, out))
+                return _solid(element.name, geometry, _plate(middle, along * tip.width, across * tip.height, out), gap)
+            return _solid(element.name, geometry, _edge(middle, along * tip.length, across * _THICK * gap, out), gap)
         case PinTip():
             axis = np.array([0.0, 0.0, 1.0]) if element.axis is None else np.asarray(element.axis, dtype=np.float64)
             return _pin(element.name, geometry, at, unit_normal(X_PW.vectors(axis[None])[0]), tip.diameter / 2, gap)
@@ -127,21 +135,26 @@ def _of_element(
 
 def _of_point(name: str, contact: Contact, geometry: PartGeometry, X_WP: Pose) -> PointBarrier:
     point = X_WP.inverse().points(contact.point[None])[0]
-    return PointBarrier(name, point, max(0.0, -geometry.surface.at(point)[0]))
+    depth = max(0.0, -geometry.surface.at(point)[0])
+    return PointBarrier(name, point, depth, contact.distance is not None)
 
 
-def _solid(name: str, geometry: PartGeometry, points: Directions, triangles: np.ndarray, here: int) -> SolidBarrier:
-    """``here``: as many of the first points lie on the part."""
-    depth = max(0.0, -float(geometry.surface.distances(points[:here]).min()))
-    return SolidBarrier(name, points[triangles], depth)
+def _solid(name: str, geometry: PartGeometry, shape: tuple[Points, Triangles, int], gap: float) -> SolidBarrier:
+    """A tip's shape; the number says how many of its first points lie on the part.
+
+    Where the others are inside the part, it has less room than the thickness assumed.
+    """
+    points, triangles, here = shape
+    depths = -geometry.surface.distances(points)
+    return SolidBarrier(name, points[triangles], max(0.0, float(depths[:here].max())), assumed=bool(depths.max() > gap))
 
 
-def _plate(middle: Point, width: Point, height: Point, out: Point) -> tuple[Directions, np.ndarray, int]:
+def _plate(middle: Point, width: Point, height: Point, out: Point) -> tuple[Points, Triangles, int]:
     ring = np.array([-width - height, width - height, width + height, height - width]) / 2
     return (*_prism(middle + ring, out), 4)
 
 
-def _edge(middle: Point, length: Point, width: Point, out: Point) -> tuple[Directions, np.ndarray, int]:
+def _edge(middle: Point, length: Point, width: Point, out: Point) -> tuple[Points, Triangles, int]:
     """A bar with a triangle as its section, one edge of which lies on the part."""
     section = np.array([np.zeros(3), out + width / 2, out - width / 2])
     points, triangles = _prism(middle - length / 2 + section, length)
@@ -150,7 +163,7 @@ def _edge(middle: Point, length: Point, width: Point, out: Point) -> tuple[Direc
     return points[order], np.argsort(order)[triangles], 2
 
 
-def _prism(ring: Directions, along: Point) -> tuple[Directions, np.ndarray]:
+def _prism(ring: Points, along: Point) -> tuple[Points, Triangles]:
     """A prism over a convex ring, its triangles turned outward."""
     count = len(ring)
     points = np.vstack([ring, ring + along])

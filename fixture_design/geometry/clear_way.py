@@ -2,7 +2,8 @@
 
 Exact for bodies, pads, lines and pins as shapes (`shadows`) and for balls (their distance to the part's edges and
 faces); a point is in the way if the part passes over it and all around it. What touches or overlaps by no more than at
-the start, and the surface gap, is not in the way. The way has no end: out is out of the fixture altogether.
+the start, and the surface gap, is not in the way. Facets count as they are: what they leave of a round surface is not
+seen. The way has no end: out is out of the fixture altogether.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from fixture_design.geometry.barriers import BallBarrier, Barrier, PointBarrier,
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.segments import Segments, segment_distances
 from fixture_design.geometry.separation import Solid, separation
-from fixture_design.geometry.shadows import Faces, Frame, nearest_meeting, region_above
-from fixture_design.geometry.shapes import Corners, Vector3
+from fixture_design.geometry.shadows import Faces, Frame, Triples, nearest_meeting, region_above
+from fixture_design.geometry.shapes import Vector3
 from fixture_design.layout import Layout, Obstacle, Pose
 
 #: Columns around a point that must all be passed over before it is in the way.
@@ -35,6 +36,11 @@ class Meeting:
 
     obstacle: Obstacle
     certain: bool
+
+
+def first_of(meetings: Sequence[Meeting]) -> Meeting | None:
+    """The first on the way, of the certain ones if there are any."""
+    return min(meetings, key=lambda m: (not m.certain, m.obstacle.after)) if meetings else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +60,8 @@ class Surroundings:
     def of(cls, layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact]) -> Surroundings:
         """See `barriers_of`; a surface gap of zero is what the part's edges are known to."""
         pose = Pose.identity(3) if layout.part is None else layout.part.pose
-        return cls(geometry, barriers_of(layout, geometry, contacts), pose, max(layout.surface_gap, geometry.on_edge))
+        gap = max(layout.surface_gap, geometry.on_edge)
+        return cls(geometry, barriers_of(layout, geometry, contacts, gap), pose, gap)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -66,8 +73,11 @@ class Surroundings:
         highest = max((_reach(barrier, t) for barrier in self.barriers), default=-np.inf)
         return max(0.0, highest - float((self.geometry.vertices @ t).min()))
 
-    def meeting(self, direction: Point) -> Meeting | None:
+    def meeting(self, direction: Point, any_one: bool = False) -> Meeting | None:
         """What is first in the way along a unit direction in W, a certain one where there is one; None if nothing is.
+
+        Args:
+            any_one: the first one found will do, points and balls before bodies.
 
         Raises:
             GeometryError: the geometry engine has no answer.
@@ -75,18 +85,18 @@ class Surroundings:
         frame = Frame.along(self._in_part(direction))
         corners = frame.seen(self._corners)
         part = Faces.facing(corners, False)
-        found = [m for m in (self._with(barrier, frame, corners, part) for barrier in self.barriers) if m is not None]
-        if not found:
-            return None
-        return min(found, key=lambda meeting: (not meeting.certain, meeting.obstacle.after))
+        quick_first = sorted(self.barriers, key=lambda barrier: isinstance(barrier, SolidBarrier))
+        meetings = (self._with(barrier, frame, corners, part) for barrier in quick_first)
+        found = (meeting for meeting in meetings if meeting is not None)
+        return next(found, None) if any_one else first_of(list(found))
 
-    def _with(self, barrier: Barrier, frame: Frame, corners: Corners, part: Faces) -> Meeting | None:
+    def _with(self, barrier: Barrier, frame: Frame, corners: Triples, part: Faces) -> Meeting | None:
         match barrier:
             case PointBarrier():
                 met = self._point(barrier, frame, corners, part)
                 certain = barrier.depth <= self.gap
             case BallBarrier():
-                met = self._ball(barrier, frame, part)
+                met = self._ball(barrier, frame, corners)
                 certain = barrier.depth <= self.gap
             case SolidBarrier():
                 met = self._solid(barrier, frame, corners, part)
@@ -98,9 +108,11 @@ class Surroundings:
         return Meeting(Obstacle(barrier.name, after, point, self.X_WP.vectors(frame.axes[2:])[0]), certain)
 
     def _point(
-        self, barrier: PointBarrier, frame: Frame, corners: Corners, part: Faces
+        self, barrier: PointBarrier, frame: Frame, corners: Triples, part: Faces
     ) -> tuple[float, Vector3] | None:
         seen, allowed = frame.seen(barrier.point), self.gap + barrier.depth
+        if barrier.depth > self.gap and not barrier.measured:
+            return 0.0, seen
         angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
         columns = seen[:2] + allowed * np.vstack([[0.0, 0.0], np.column_stack([np.cos(angles), np.sin(angles)])])
         lower = _near(part, seen, allowed)
@@ -113,7 +125,7 @@ class Surroundings:
         ways = seen[2] - tops.heights(face, np.tile(seen[:2], (len(face), 1)))
         return float(ways[ways >= 0].min(initial=np.inf)) if (ways >= 0).any() else 0.0, seen
 
-    def _ball(self, barrier: BallBarrier, frame: Frame, part: Faces) -> tuple[float, Vector3] | None:
+    def _ball(self, barrier: BallBarrier, frame: Frame, corners: Triples) -> tuple[float, Vector3] | None:
         """The ball goes the other way: how near its centre comes to the part's edges, or through a face."""
         center = frame.seen(barrier.center)
         least = barrier.radius - self.gap - barrier.depth
@@ -131,15 +143,16 @@ class Surroundings:
                 rise = float(np.sqrt(max(0.0, barrier.radius**2 - float(off[:2] @ off[:2]))))
                 after = max(0.0, -float(off[2]) - rise)
                 meetings.append((after, point + np.array([0.0, 0.0, after])))
-        column, face = part.over(center[None, :2])
-        heights = part.heights(face, np.tile(center[:2], (len(column), 1)))
-        for height in heights[heights < center[2] - barrier.radius].tolist():
+        ahead = _near(Faces.facing(corners, True), center, 0.0)
+        column, face = ahead.over(center[None, :2])
+        heights = ahead.heights(face, np.tile(center[:2], (len(column), 1)))
+        for height in heights[heights < center[2] - least].tolist():
             after = max(0.0, float(center[2] - height) - barrier.radius)
             meetings.append((after, np.array([center[0], center[1], height + after])))
         return min(meetings, key=lambda meeting: meeting[0]) if meetings else None
 
     def _solid(
-        self, barrier: SolidBarrier, frame: Frame, corners: Corners, part: Faces
+        self, barrier: SolidBarrier, frame: Frame, corners: Triples, part: Faces
     ) -> tuple[float, Vector3] | None:
         import shapely
 
@@ -172,7 +185,7 @@ class Surroundings:
         return Solid.of(self.geometry)
 
     @cached_property
-    def _corners(self) -> Corners:
+    def _corners(self) -> Triples:
         return self.geometry.vertices[self.geometry.triangles]
 
     @cached_property

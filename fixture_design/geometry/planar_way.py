@@ -7,7 +7,7 @@ ball likewise by its radius; a pad or line, which in the plane is a stretch of t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ import numpy as np
 from fixture_design.arrays import Point, Points
 from fixture_design.contacts import Contact, unit_normal
 from fixture_design.geometry.barriers import STANDING
-from fixture_design.geometry.clear_way import Meeting
+from fixture_design.geometry.clear_way import Meeting, first_of
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.layout import Element, Layout, LineTip, Obstacle, PadTip, Pose, SphereTip, element_name
 
@@ -35,13 +35,14 @@ _SEAM = 0.01
 class PlanarBarrier:
     """A point, a stretch between two points (shape (1, 2) or (2, 2), in P) or, with a radius, a ball [m].
 
-    ``depth``: how far inside the part it is at the start [m].
+    ``depth``: how far inside the part it is at the start [m]; ``measured``: see `barriers.PointBarrier`.
     """
 
     name: str
     points: Points
     radius: float
     depth: float
+    measured: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +65,8 @@ class PlanarSurroundings:
                 found.append(_of_element(element, mine, polygon, pose))
         for contact in layout.contacts:
             if contact.role in STANDING:
-                found.append(_barrier(contact.name, pose.inverse().points(contact.point[None]), 0.0, polygon))
+                point = pose.inverse().points(contact.point[None])
+                found.append(replace(_barrier(contact.name, point, 0.0, polygon), measured=False))
         return cls(polygon, tuple(found), pose, max(layout.surface_gap, polygon.precision))
 
     @property
@@ -77,15 +79,18 @@ class PlanarSurroundings:
         highest = max((float((b.points @ t).max()) + b.radius for b in self.barriers), default=-np.inf)
         return max(0.0, highest - float((self.polygon.vertices @ t).min()))
 
-    def meeting(self, direction: Point) -> Meeting | None:
-        """What is first in the way along a unit direction in W, a certain one if there is one; None if nothing is."""
+    def meeting(self, direction: Point, any_one: bool = False) -> Meeting | None:
+        """What is first in the way along a unit direction in W, or ``any_one``; see `clear_way.Surroundings`."""
         t = self._in_part(direction)
-        found = [m for m in (self._with(barrier, t, direction) for barrier in self.barriers) if m is not None]
-        return min(found, key=lambda m: (not m.certain, m.obstacle.after)) if found else None
+        meetings = (self._with(barrier, t, direction) for barrier in self.barriers)
+        found = (meeting for meeting in meetings if meeting is not None)
+        return next(found, None) if any_one else first_of(list(found))
 
     def _with(self, barrier: PlanarBarrier, t: Point, direction: Point) -> Meeting | None:
         import shapely
 
+        if barrier.depth > self.gap and not barrier.measured:
+            return Meeting(Obstacle(barrier.name, 0.0, self.X_WP.points(barrier.points)[0], direction), False)
         # the last part of the way only passes by
         free, blocked = 0.0, self.length(direction) + 2 * self.polygon.half_diagonal
         if self._overlap(barrier, t, blocked).is_empty:

@@ -25,13 +25,15 @@ from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Weights, cross_products
 from fixture_design.contacts import tangents
-from fixture_design.geometry.shapes import Corners, Vector3
+from fixture_design.geometry.shapes import Vector3
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 #: Columns, one a row.
-Columns = Float[np.ndarray, "c 2"]
+Columns = Float[np.ndarray, "_ 2"]
+#: The corners of triangles of any solid.
+Triples = Float[np.ndarray, "_ 3 3"]
 
 #: Triangles steeper than this along the direction have no columns: its cosine to their normal [-]. Over a metre their
 #: shadow is a nanometre wide.
@@ -65,10 +67,10 @@ class Frame:
 class Faces:
     """Triangles in (u, v, h), shape (n, 3, 3), none steep."""
 
-    corners: Corners
+    corners: Triples
 
     @classmethod
-    def facing(cls, corners: Corners, ahead: bool) -> Faces:
+    def facing(cls, corners: Triples, ahead: bool) -> Faces:
         """Those of some triangles that face ahead along h, or back."""
         normals = cross_products(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         heights = normals[:, 2] if ahead else -normals[:, 2]
@@ -200,7 +202,7 @@ def _extent(columns: Columns) -> float:
     return float(np.ptp(columns, axis=0).max())
 
 
-def nearest_meeting(columns: Columns, body: Corners, part: Corners) -> tuple[float, Vector3]:
+def nearest_meeting(columns: Columns, body: Triples, part: Triples) -> tuple[float, Vector3]:
     """In which column the part meets the body first when it moves ahead: how far it goes [m], and the point met.
 
     Args:

@@ -17,6 +17,7 @@ from fixture_design.layout import (
     LoadsHeld,
     LoadVerdict,
     LocatingErrors,
+    Obstacle,
     Rocking,
     Seating,
     SeatingStep,
@@ -158,12 +159,8 @@ def _rocking(rocking: Rocking) -> Data:
 
 
 def _ways(evidence: StraightWays) -> Data:
-    obstacle = evidence.obstacle
-    found: Data | None = None
-    if obstacle is not None:
-        after, point = plain_numbers(obstacle.after), plain_numbers(obstacle.point)
-        found = {"name": obstacle.name, "after": after, "point": point}
-    return {
+    weights = evidence.weights
+    data: Data = {
         "contacts": list(evidence.contacts),
         "open": list(evidence.open),
         "spans": plain_numbers(evidence.spans),
@@ -173,11 +170,27 @@ def _ways(evidence: StraightWays) -> Data:
         "slides": list(evidence.slides),
         "length": plain_numbers(evidence.length),
         "against": list(evidence.against),
-        "obstacle": found,
-        "weights": None
-        if evidence.weights is None
-        else {name: plain_numbers(values) for name, values in evidence.weights.items()},
+        "obstacle": None if evidence.obstacle is None else _obstacle(evidence.obstacle),
+        "weights": None if weights is None else _weights(weights),
     }
+    if evidence.branches:
+        data["branches"] = [_weights(branch) for branch in evidence.branches]
+    if evidence.tried:
+        data["tried"] = [_obstacle(obstacle) for obstacle in evidence.tried]
+    return data
+
+
+def _obstacle(obstacle: Obstacle) -> Data:
+    data: Data = {
+        "name": obstacle.name,
+        "after": plain_numbers(obstacle.after),
+        "point": plain_numbers(obstacle.point),
+    }
+    return data if obstacle.direction is None else data | {"direction": plain_numbers(obstacle.direction)}
+
+
+def _weights(weights: Mapping[str, Sequence[float]]) -> Data:
+    return {name: plain_numbers(values) for name, values in weights.items()}
 
 
 def _by_name(values: Mapping[str, float]) -> Data:

@@ -102,9 +102,12 @@ class SeatingRecord(Record):
 
 
 class ObstacleRecord(Record):
+    """What is in the way: an element, body or contact."""
+
     name: str
-    after: Number
+    after: Number = Field(description="so much of the way [m]")
     point: Row
+    direction: Row | None = Field(None, description="of the way, unit")
 
 
 class WaysRecord(Record):
@@ -120,7 +123,9 @@ class WaysRecord(Record):
     length: Number | None = Field(description="of the way looked at [m]")
     against: list[str]
     obstacle: ObstacleRecord | None
-    weights: dict[str, Row] | None
+    weights: dict[str, Row] | None = Field(description="on unit normals: no direction, or none but `direction`'s line")
+    branches: list[dict[str, Row]] | None = Field(None, description="weights, where alternatives need several sets")
+    tried: list[ObstacleRecord] | None = Field(None, description="something in the way in each direction tried")
 
 
 class LoadRowRecord(Record):

@@ -260,7 +260,7 @@ class StraightWays:
         weights: where there is no direction at all, weights >= 0 on unit normals, one a normal, that say so: they
             balance with rank p. Where there is a direction and no other but its opposite, likewise with rank p - 1.
         branches: the same where alternatives need several sets of weights, one set for each branch that needs one.
-        tried: what is in the way in each direction that was tried and is blocked, one each.
+        tried: something that is in the way in each direction that was tried and is blocked, one each.
     """
 
     contacts: tuple[str, ...]

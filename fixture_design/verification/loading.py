@@ -73,7 +73,8 @@ def _tried(
     certain = True
     directions = cone.candidates(_preferred(layout))
     for direction in directions[:MOST_TRIED]:
-        meeting = around.meeting(direction)
+        # what is first in the way is told of the best one, and of all there are if these are few
+        meeting = around.meeting(direction, any_one=bool(blocked) and cone.confining is None)
         if meeting is None:
             ways = _ways(cone, opened, direction, length=around.length(direction), against=around.names)
             return _yes(cone, ways, direction)
