@@ -3,14 +3,15 @@ own.
 
 The part rests where d_i . q = s_i, s_i the error of contact i (`locating_rows`). Located exactly once, q = D^-1 s, and
 a feature with the row g = [direction; point X direction] is off by at most the sum of the elements' shares. Located
-more than once, it rests on some of the contacts, a seat, and which depends on the errors and on what presses it: bounds
-are taken over all seats (`seats`) that can carry gravity and the clamps' preloads, or over all there are where these
-are not known. To first order: turns by small angles, and normals that stay.
+more than once, it rests on some of the contacts, a seat (`seats`), and which depends on the errors and on what presses
+it: bounds are taken over all seats that can carry gravity and the clamps' preloads (`resting`). Elements that these do
+not load are taken to touch as far as they can: a part with three pads under it is not left hanging on one edge of one
+and a corner of the next. To first order: turns by small angles, and normals that stay.
 
 yes: no seat lets any feature be off by more than its tolerance. no: a displacement that occurs has a feature off by
-more, and either the seat that it rests on carries what presses the part, or that is not known and every seat's bound is
-beyond the tolerance; or a feature moves with a motion that no locator notices. A tie, or seats that disagree, are
-undecided.
+more, and either the seat that it rests on carries what presses the part, or that is not known and the bound is beyond
+the tolerance on whatever elements the part rests; or a feature moves with a motion that no locator notices. A tie, or
+seats that disagree, are undecided.
 """
 
 from __future__ import annotations
@@ -64,6 +65,8 @@ def accurate(layout: Layout, group: Group, reference: Point, tolerances: Toleran
     answer, reasons = _answer(found, evidence, unmeasured, tolerances)
     if unmeasured and answer is not Answer.NO:
         reasons.append(f"no tolerance is given for {_list(unmeasured)}: taken as 0")
+    if answer is not Answer.NO and any(branch.assumed for branch in found):
+        reasons.append("elements that nothing known presses: the part is taken to rest on as many as it can")
     return Finding(answer, use=evidence, reason="; ".join(reasons) or None)
 
 

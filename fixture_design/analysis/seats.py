@@ -13,7 +13,7 @@ from math import comb, prod
 
 import numpy as np
 
-from fixture_design.arrays import Mask, Rows, Vector
+from fixture_design.arrays import Rows
 from fixture_design.tolerances import SUM_ROUNDING, Tolerances
 
 #: Sets of contacts looked at before the list of seats is cut off.
@@ -78,30 +78,6 @@ def _blocks(linked: np.ndarray) -> list[tuple[int, ...]]:
         left -= group
         groups.append(tuple(sorted(group)))
     return groups
-
-
-def carrying(rows: Rows, both: Mask, seats: Seats, wrench: Vector | None, tolerances: Tolerances) -> tuple[Mask, bool]:
-    """Which seats can carry a wrench without friction, or cannot be proved not to, and whether it told them apart.
-
-    A contact pushes the part along -d_i, so that w = sum N_i d_i with N_i >= 0, of any sign for rows that keep the part
-    on both sides.
-
-    Args:
-        wrench: dimensionless like the rows, of any size, shape (d,); None tells nothing.
-
-    Returns:
-        all seats and False where the wrench is not known, or no seat carries it.
-    """
-    every = np.ones(len(seats.members), dtype=bool)
-    if wrench is None or not np.any(wrench):
-        return every, False
-    unit = wrench / np.linalg.norm(wrench)
-    if np.linalg.norm(unit - (unit @ seats.basis.T) @ seats.basis) > tolerances.zero:
-        return every, False
-    forces = solved(rows, seats, unit[None])[:, 0]
-    lowest = np.where(both[seats.members], 0.0, forces).min(axis=1)
-    carry = lowest >= -tolerances.near * np.abs(forces).max(axis=1)
-    return (carry, True) if carry.any() else (every, False)
 
 
 def solved(rows: Rows, seats: Seats, targets: Rows) -> np.ndarray:

@@ -117,9 +117,13 @@ class _Extent:
     def __init__(self) -> None:
         self.worst, self.least, self.slack = 0.0, np.inf, 0.0
 
-    def add(self, bounds: np.ndarray, slack: np.ndarray) -> None:
+    def add(self, bounds: np.ndarray, slack: np.ndarray, elements: Sequence[frozenset[str]]) -> None:
+        """Of the seats of one branch, each with the elements that it rests on."""
         self.worst = max(self.worst, float(bounds.max()))
-        self.least = min(self.least, float(bounds.min()))
+        largest: dict[frozenset[str], float] = {}
+        for bound, rests_on in zip(bounds.tolist(), elements, strict=True):
+            largest[rests_on] = max(largest.get(rests_on, 0.0), bound)
+        self.least = min(self.least, *largest.values())
         self.slack = max(self.slack, float(slack.max()))
 
 
@@ -149,8 +153,9 @@ def _all_branches(evidence: LocatingErrors, case: Case) -> list[_Extent] | str:
             return "the weights of the seats do not make the features' rows"
         own = branch.shares(weights, evidence.errors, evidence.form).sum(axis=-1)
         bounds, slack = bounds_again(branch, seats, weights, own), _slack(branch, seats, weights, evidence)
+        elements = [on for on, keep in zip(branch.touched(seats), kept.tolist(), strict=True) if keep]
         for k, extent in enumerate(extents):
-            extent.add(bounds[kept, k], slack[kept, k])
+            extent.add(bounds[kept, k], slack[kept, k], elements)
     return extents
 
 

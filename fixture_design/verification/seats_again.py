@@ -39,6 +39,10 @@ class BranchAgain:
     def elements(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(self.owners))
 
+    def touched(self, seats: SeatsAgain) -> list[frozenset[str]]:
+        """The elements that each seat rests on."""
+        return [frozenset(self.owners[i] for i in members) for members in seats.members.tolist()]
+
     def walls(self, element: str) -> bool:
         """Whether an element's rows all keep the part on both sides."""
         return all(both for both, owner in zip(self.both, self.owners, strict=True) if owner == element)
@@ -158,19 +162,37 @@ def _groups(rows: Rows, near: float) -> list[tuple[tuple[int, ...], int]]:
 
 
 def kept_again(branch: BranchAgain, seats: SeatsAgain, wrench: Vector | None) -> tuple[np.ndarray, bool]:
-    """Seats that carry a dimensionless wrench, w = sum N_i d_i with N_i >= 0 but for both-sided rows, and True.
+    """Seats that carry a dimensionless wrench, and whether one is known that some carry.
 
-    All, and False, where it is not known or none carries it.
+    w = sum N_i d_i with N_i >= 0 but for both-sided rows; of those that load the same elements the ones on most.
     """
-    every = np.ones(len(seats.members), dtype=bool)
+    loads = _loads(branch, seats, wrench)
+    pressed = any(load is not None for load in loads)
+    if not pressed:
+        loads = [frozenset() for _ in loads]
+    on = branch.touched(seats)
+    most: dict[frozenset[str], int] = {}
+    for load, elements in zip(loads, on, strict=True):
+        if load is not None:
+            most[load] = max(most.get(load, 0), len(elements))
+    kept = [load is not None and len(elements) == most[load] for load, elements in zip(loads, on, strict=True)]
+    return np.array(kept), pressed
+
+
+def _loads(branch: BranchAgain, seats: SeatsAgain, wrench: Vector | None) -> list[frozenset[str] | None]:
+    """The elements that each seat carries a wrench with; None for seats that do not."""
+    nothing: list[frozenset[str] | None] = [None] * len(seats.members)
     if wrench is None or not np.any(wrench):
-        return every, False
+        return nothing
     unit = wrench / np.linalg.norm(wrench)
     if np.linalg.norm(unit - unit @ seats.basis.T @ seats.basis) > branch.near / DEFAULT.band**2:
-        return every, False
-    forces = seats.weights(unit[None], len(branch.rows))[:, 0]
-    pulling = np.where(branch.both, 0.0, forces).min(axis=1) < -branch.near * np.abs(forces).max(axis=1)
-    return (every, False) if pulling.all() else (~pulling, True)
+        return nothing
+    loads = nothing
+    for seat, forces in enumerate(seats.weights(unit[None], len(branch.rows))[:, 0]):
+        limit = branch.near * np.abs(forces).max()
+        if np.all((forces >= -limit) | branch.both):
+            loads[seat] = frozenset(branch.owners[i] for i in np.flatnonzero(np.abs(forces) > limit))
+    return loads
 
 
 def bounds_again(branch: BranchAgain, seats: SeatsAgain, weights: np.ndarray, own: np.ndarray) -> np.ndarray:
