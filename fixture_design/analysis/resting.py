@@ -32,8 +32,8 @@ def resting(
     """The seats that a part may rest on under a wrench, without friction.
 
     A contact pushes the part along -d_i, so that a seat carries w = sum N_i d_i with N_i >= 0, of any sign for rows
-    that keep the part on both sides. Nothing tells of elements that the wrench leaves idle (all of them, where it is not
-    known or no seat carries it): of seats that load the same elements those are kept that rest on most.
+    that keep the part on both sides. Nothing is known of elements that the wrench leaves idle (all of them, where it is
+    not known or no seat carries it): of seats that load the same elements those are kept that rest on most.
 
     Args:
         owner: the element of each row.  wrench: dimensionless like the rows, of any size, shape (d,).

@@ -18,7 +18,7 @@ import numpy as np
 from fixture_design.analysis.lightest import lightest
 from fixture_design.analysis.locating_rows import LocatingRows
 from fixture_design.analysis.seats import Seats, scattered, solved
-from fixture_design.arrays import Indices, Mask, Point, Rows, Vector, Weights
+from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
 from fixture_design.tolerances import Tolerances
 
 #: Seats up to which the bounds of all are compared with each other.
@@ -121,7 +121,7 @@ def displaced(
 
 def _extreme(
     rows: LocatingRows, seats: Seats, seat: int, weights: Weights, sign: float, rest: float, near: float
-) -> tuple[Vector, Rows]:
+) -> tuple[Vector, Points]:
     """The displacement with all elements that count at their extremes, the others ``rest`` of theirs towards the part.
 
     Returns:
@@ -151,7 +151,7 @@ def _outward(rows: LocatingRows, element: int) -> Point:
     return total / length if length > 0 else total
 
 
-def _free_of_others(rows: LocatingRows, motion: Vector, moves: Rows, near: float) -> bool:
+def _free_of_others(rows: LocatingRows, motion: Vector, moves: Points, near: float) -> bool:
     """Whether d_i . q <= n_i . u + form for all rows, with equality for those on both sides, and |u| <= radius."""
     gaps = np.sum(rows.normals * moves[rows.owner], axis=1) + rows.form - rows.rows @ motion
     largest = near * max(float(np.abs(motion).max()), float(rows.radius.max()))

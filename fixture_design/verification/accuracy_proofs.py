@@ -48,7 +48,7 @@ def accuracy_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
     if isinstance(found, str):
         return found
     for k, feature in enumerate(evidence.features):
-        fault = _feature_fault(feature, evidence, case) or _extent_fault(feature, found[k])
+        fault = _feature_fault(feature, evidence, case) or _extent_fault(feature, found[k], _tiny(evidence, case))
         if fault is not None:
             return f"{feature.feature}: {fault}"
     return (
@@ -72,6 +72,11 @@ def _numbers_fault(evidence: LocatingErrors, locators: Sequence[Contact]) -> str
         return "an error or a tolerance is no length"
     units = [float(np.linalg.norm(feature.direction)) for feature in evidence.features]
     return None if np.allclose(units, 1.0, rtol=0, atol=SAME_ERROR) else "a direction is not of length one"
+
+
+def _tiny(evidence: LocatingErrors, case: Case) -> float:
+    """Errors up to this are what rounding leaves of zero [m]."""
+    return case.limit * (max(evidence.errors.values()) + evidence.form)
 
 
 def _motion_fault(evidence: LocatingErrors, locators: Sequence[Contact]) -> str | None:
@@ -195,13 +200,14 @@ def _feature_fault(feature: FeatureError, evidence: LocatingErrors, case: Case) 
         if left > case.limit * max(np.abs(weights).max(), np.linalg.norm(target)):
             return "the weights do not make the feature's row"
         shares = branch.shares(weights, evidence.errors, evidence.form)
-        return _shares_fault(feature, dict(zip(branch.elements, shares.tolist(), strict=True)))
+        found = dict(zip(branch.elements, shares.tolist(), strict=True))
+        return _shares_fault(feature, found, _tiny(evidence, case))
     return "the rows are not those of one choice of alternatives"
 
 
-def _shares_fault(feature: FeatureError, found: dict[str, float]) -> str | None:
+def _shares_fault(feature: FeatureError, found: dict[str, float], tiny: float) -> str | None:
     """Stated shares, their sum and their root sum square."""
-    limit = SAME_ERROR * max(feature.worst, sum(found.values()))
+    limit = SAME_ERROR * sum(found.values()) + tiny
     if set(feature.shares) != set(found):
         return "the shares are not those of its elements"
     wrong = [name for name, share in found.items() if not abs(feature.shares[name] - share) <= limit]
@@ -213,8 +219,8 @@ def _shares_fault(feature: FeatureError, found: dict[str, float]) -> str | None:
     return None if abs(root - feature.rss) <= limit else f"the root sum square is {root:.3e}, not {feature.rss:.3e}"
 
 
-def _extent_fault(feature: FeatureError, extent: _Extent) -> str | None:
-    limit = SAME_ERROR * extent.worst
+def _extent_fault(feature: FeatureError, extent: _Extent, tiny: float) -> str | None:
+    limit = SAME_ERROR * extent.worst + tiny
     if not abs(feature.worst - extent.worst) <= limit:
         return f"the worst over all seats is {extent.worst:.3e}, not {feature.worst:.3e}"
     if not abs(feature.least - extent.least) <= limit:
@@ -228,8 +234,10 @@ def _answer_fault(
     """Whether the extents say what the answer says."""
     count = len(evidence.features)
     pose = [] if evidence.pose is None else evidence.pose.tolist()
+    # metres, then radians
+    tiny = _tiny(evidence, case) * max(1.0, 1.0 / case.scale.length)
     for stated, extent in zip(pose, extents[count:], strict=True):
-        if not abs(stated - extent.worst) <= SAME_ERROR * extent.worst:
+        if not abs(stated - extent.worst) <= SAME_ERROR * extent.worst + tiny:
             return f"an error of the pose is {extent.worst:.3e}, not {stated:.3e}"
     pairs = list(zip(evidence.features, extents, strict=False))
     if answer is Answer.YES:

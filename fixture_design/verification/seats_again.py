@@ -15,7 +15,7 @@ import numpy as np
 from fixture_design.analysis.lightest import lightest
 from fixture_design.analysis.seat_errors import MAX_COMPARED
 from fixture_design.analysis.seats import MAX_SEATS
-from fixture_design.arrays import Point, Rows, Vector
+from fixture_design.arrays import Point, Points, Rows, Vector
 from fixture_design.contacts import Contact, unit_normal
 from fixture_design.layout import element_name
 from fixture_design.tolerances import DEFAULT
@@ -27,7 +27,7 @@ class BranchAgain:
     """One choice of alternatives: rows, their unit normals, (contact, normal) and element; see `LocatingRows`."""
 
     rows: Rows
-    normals: Rows
+    normals: Points
     places: tuple[tuple[str, int], ...]
     owners: tuple[str, ...]
     doubt: np.ndarray
