@@ -16,7 +16,7 @@ seats that disagree, are undecided.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,21 +24,29 @@ import numpy as np
 from fixture_design.analysis.branch_accuracy import Blurred, BranchAccuracy, branch_accuracy
 from fixture_design.analysis.locating_rows import MAX_BRANCHES, locating_branches
 from fixture_design.analysis.normal_errors import blur
-from fixture_design.analysis.pressing import pressing_wrench
+from fixture_design.analysis.pressing import pressing_wrench, weight_as_given
 from fixture_design.arrays import Point, Vector
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, FeatureError, Finding, Group, Layout, LocatingErrors, Rocking, element_name
-from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.tolerances import DEFAULT, SEATED, Tolerances
 
 #: Elements named in one reason before it says "and so many more".
 _NAMES_SHOWN = 5
 
 
-def accurate(layout: Layout, group: Group, reference: Point, tolerances: Tolerances = DEFAULT) -> Finding:
+def accurate(
+    layout: Layout,
+    group: Group,
+    reference: Point,
+    tolerances: Tolerances = DEFAULT,
+    weight: Callable[[Layout], Vector | None] = weight_as_given,
+) -> Finding:
     """Whether the group's locators place all key features within their tolerances.
 
     Args:
         reference: about which the errors of the pose are given, in W [m].
+        weight: the wrench [f; m] of gravity about W's origin [N, N m], None where it is not known; asked only where the
+            part is located more than once and gravity acts.
 
     Returns:
         a finding with `LocatingErrors` as its evidence; where nothing could be computed, undecided without.
@@ -53,7 +61,10 @@ def accurate(layout: Layout, group: Group, reference: Point, tolerances: Toleran
     branches = locating_branches(locators, errors, form or 0.0, tolerances)
     if branches is None:
         return _undecided(f"the contacts have more than {MAX_BRANCHES} choices of alternatives")
-    pressing = pressing_wrench(layout, group)
+    pressing = None
+    if any(len(rows.rows) > np.linalg.matrix_rank(rows.rows, tol=SEATED) for rows in branches):
+        known = weight(layout) if group.gravity and layout.gravity is not None else None
+        pressing = pressing_wrench(layout, group, known)
     found: list[BranchAccuracy] = []
     for rows in branches:
         branch = branch_accuracy(rows, layout.key_features, pressing, reference, tolerances)

@@ -14,7 +14,7 @@ from fixture_design.analysis.seats import Seats, seats_of
 from fixture_design.arrays import Point, Rows, Vector, Weights
 from fixture_design.contacts import motion_about_origin
 from fixture_design.layout import FeatureError, KeyFeature, Rocking
-from fixture_design.tolerances import Tolerances
+from fixture_design.tolerances import SEATED, Tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def branch_accuracy(
     if seats is None:
         return Blurred("the contacts' smallest singular value is neither zero nor clear of it")
     whole = len(seats.basis) == rows.rows.shape[1]
-    if rows.doubt.any() and (len(rows.rows) > len(seats.basis) or not whole):
+    if float(np.linalg.norm(rows.doubt)) > (SEATED if whole else 0.0) and (seats.groups or not whole):
         return Blurred("the contacts depend on each other, up to what their normals may be off")
     units = [feature.direction / np.linalg.norm(feature.direction) for feature in features]
     targets = np.array([rows.target(f.point, unit) for f, unit in zip(features, units, strict=True)])
@@ -173,7 +173,9 @@ class _Case:
         _, sets = np.unique(self.rest.elements[self.rest.kept], axis=0, return_inverse=True)
         largest = np.zeros(int(sets.max()) + 1)
         np.maximum.at(largest, sets.ravel(), bounds[self.rest.kept])
-        return float(largest.min())
+        # one error and not two that differ by rounding
+        least, worst = float(largest.min()), float(largest.max())
+        return worst if least >= worst * (1 - self.tolerances.tie) else least
 
     def _displaced(self, k: int, tolerance: float, least: float) -> Displaced | None:
         """Only for what may be refused: where what presses the part is known, or every seat's bound is too large."""

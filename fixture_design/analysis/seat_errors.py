@@ -51,8 +51,14 @@ def seat_errors(rows: LocatingRows, seats: Seats, targets: Rows, tolerances: Tol
         targets: shape (k, d), each in the span of the rows.
     """
     weights = scattered(solved(rows.rows, seats, targets), seats, len(rows.rows))
-    if len(rows.rows) > len(seats.basis):
-        weights = lightest(weights, rows.rows, rows.normals, rows.both, rows.owner, rows.radius, tolerances.near)
+    if len(rows.rows) > len(seats.basis) and np.sum(rows.both) > 1:
+        weights = lightest(weights, rows.rows, rows.normals, rows.both, rows.owner, rows.radius)
+        left = targets - weights @ rows.rows
+        # walls of pins depend on each other only up to the facets' rounding
+        missing = np.linalg.solve(
+            (rows.rows[seats.members] @ seats.basis.T).transpose(0, 2, 1), (left @ seats.basis.T).transpose(0, 2, 1)
+        )
+        weights = weights + scattered(missing.transpose(0, 2, 1), seats, len(rows.rows))
     own = rows.shares(weights).sum(axis=-1)
     source = np.broadcast_to(np.arange(len(own))[:, None], own.shape)
     if not 1 < len(own) <= MAX_COMPARED:

@@ -13,7 +13,7 @@ import numpy as np
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, motion_scaled, unit_normal
 from fixture_design.layout import Answer, FeatureError, Finding, LocatingErrors, element_name
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import DEFAULT, SEATED
 from fixture_design.verification.proofs import Case
 from fixture_design.verification.seats_again import (
     BranchAgain,
@@ -149,7 +149,8 @@ def _all_branches(evidence: LocatingErrors, case: Case) -> list[_Extent] | str:
         outside = np.linalg.norm(wanted - wanted @ seats.basis.T @ seats.basis, axis=1)
         if np.any(outside > branch.near * np.linalg.norm(wanted, axis=1)):
             return "a feature moves along what is not located"
-        if branch.doubt.any() and len(seats.basis) < max(len(branch.rows), case.dimension):
+        whole, over = len(seats.basis) == case.dimension, len(branch.rows) > len(seats.basis)
+        if np.linalg.norm(branch.doubt) > (SEATED if whole else 0.0) and (over or not whole):
             return "the contacts depend on each other, up to what their normals may be off"
         kept, _ = kept_again(branch, seats, _scaled(evidence.pressing, case))
         weights = branch.lightest(seats.weights(wanted, len(branch.rows)), evidence.errors, evidence.form)
@@ -325,7 +326,7 @@ def _rockings_fault(evidence: LocatingErrors, case: Case) -> str | None:
         if len(members) != len(rocking.contacts):
             return f"some of {names} are no locators"
         rows = np.vstack([case.rows(c, unit_normal(n)[None]) for c in members for n in c.normals])
-        if np.linalg.matrix_rank(rows, tol=case.near) == len(rows):
+        if np.linalg.matrix_rank(rows, tol=SEATED) == len(rows):
             return f"{names} do not depend on each other"
         moved = np.abs(rows @ motion_scaled(rocking.motion, case.scale.reference, case.scale.length))
         if not np.any(np.abs(moved - rocking.size) <= SAME_ERROR * rocking.size):

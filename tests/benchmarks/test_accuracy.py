@@ -1,4 +1,4 @@
-"""`accurate` on the layouts that search and batch ask about most: three tips, a round pin and a diamond pin; six tips."""
+"""`accurate` on what search and batch ask about most: six tips; three tips, a round and a diamond pin; three pads."""
 
 from collections.abc import Callable
 from typing import Any

@@ -2,15 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from fixture_design.layout import Answer, FeatureError, Finding, Layout, LocatingErrors, Rocking, Stage
+from fixture_design.io import read_layout
+from fixture_design.layout import Answer, Element, FeatureError, Finding, Layout, LocatingErrors, PinTip, Rocking, Stage
 from fixture_design.verification import check, verify
 from fixture_design.verification.accuracy_proofs import accuracy_fault
-from tests.analysis.locators import ROUND, THREE_TWO_ONE, UNDER, asked, evidence, feature, layout_of, pad, pin, tip
+from tests.analysis.locators import ROUND, THREE_TWO_ONE, UNDER, asked, evidence, feature, pad, pin, tip
+from tests.geometry.parts import circle, part, polygon_part, prism, write
 
 UM = 1e-6
 ALIKE = dict.fromkeys("ABCDEFGPQ", 10 * UM)
@@ -22,13 +25,20 @@ CASES = {"3-2-1": list(THREE_TWO_ONE), "4-2-1": FOUR_TWO_ONE, "pads": PADS, "pin
 
 
 def layout(tolerance: float) -> Layout:
-    contacts = [*THREE_TWO_ONE, replace(tip("K", [0.05, 0.04, 0.04], [0, 0, 1]), role="clamp")]
-    plain, _ = layout_of(contacts, ALIKE, [replace(ABOVE, tolerance=tolerance)])
-    stage = Stage("seated", ("locator",), require=("accurate", "deterministic"))
-    return replace(plain, stages=(stage,))
+    """A plate of 100 x 80 mm on two tips and against one, with a clamp above."""
+    spots = {"A": (0.01, 0.0), "B": (0.09, 0.0), "F": (0.0, 0.04)}
+    locators = [Element(name, "locator", np.array(spot), tolerance=10 * UM) for name, spot in spots.items()]
+    return Layout(
+        "plate",
+        "planar",
+        part=polygon_part([[0, 0], [0.1, 0], [0.1, 0.08], [0, 0.08]]),
+        elements=(*locators, Element("K", "clamp", np.array([0.05, 0.08]))),
+        key_features=(feature([0.05, 0.08], [1, 0], tolerance),),
+        stages=(Stage("seated", ("locator",), require=("accurate", "deterministic")),),
+    )
 
 
-@pytest.mark.parametrize(("tolerance", "answer"), [(1e-3, Answer.YES), (1e-6, Answer.NO)])
+@pytest.mark.parametrize(("tolerance", "answer"), [(21 * UM, Answer.YES), (19 * UM, Answer.NO)])
 def test_a_stage_that_requires_it_gets_it(tolerance: float, answer: Answer) -> None:
     verdict = verify(layout(tolerance))
     assert verdict.satisfied is answer
@@ -38,14 +48,69 @@ def test_a_stage_that_requires_it_gets_it(tolerance: float, answer: Answer) -> N
 
 
 def test_the_pose_is_about_the_verdicts_reference() -> None:
-    verdict = verify(layout(1e-3))
+    verdict = verify(layout(21 * UM))
     found = verdict.groups["seated"].findings["accurate"].use
     assert isinstance(found, LocatingErrors)
     assert found.reference == pytest.approx(verdict.reference)
 
 
+def test_a_plate_on_two_pins(tmp_path: Path) -> None:
+    """Through the geometry: four walls a round pin, two a diamond one; numbers as for a plane and two pins by hand."""
+    outline = [[0, 0], [0.1, 0], [0.1, 0.06], [0, 0.06]]
+    mesh = prism(outline, 0.01, [circle(0.004, 64, (0.02, 0.03)), circle(0.004, 64, (0.08, 0.03))])
+    up, along = np.array([0.0, 0, 1]), np.array([0.0, 1, 0])
+    under = [
+        Element(n, "locator", np.array([x, y, 0.0]), tolerance=10 * UM)
+        for n, x, y in (("A", 0.01, 0.01), ("B", 0.09, 0.01), ("C", 0.05, 0.05))
+    ]
+    pins = [
+        Element("P", "locator", np.array([0.02, 0.03, 0.005]), PinTip(0.00798, 20 * UM, "round"), up, 10 * UM),
+        Element("Q", "locator", np.array([0.08, 0.03, 0.005]), PinTip(0.00799, 10 * UM, "diamond", along), up, 5 * UM),
+    ]
+    diagonal = feature([0.05, 0.03, 0.005], [1, 1, 0], 1e-3)
+    plate = Layout(
+        "plate",
+        part=part(write(tmp_path, mesh)),
+        elements=(*under, *pins),
+        key_features=(diagonal,),
+        require={"locators": ("accurate",)},
+    )
+    verdict = verify(plate)
+    found = verdict.groups["locators"].findings["accurate"].use
+    assert isinstance(found, LocatingErrors)
+    assert found.features[0].worst == pytest.approx((20 * np.sqrt(1.25) + 5) / np.sqrt(2) * UM, rel=1e-4)
+    assert verdict.satisfied is Answer.YES
+    assert check(verdict) == []
+    twice = replace(plate, elements=(*under, pins[0], replace(pins[1], tip=PinTip(0.00799, 10 * UM, "round"))))
+    over = verify(twice)
+    assert check(over) == []
+    assert over.satisfied is Answer.YES
+    both = over.groups["locators"].findings["accurate"].use
+    assert isinstance(both, LocatingErrors)
+    assert both.features[0].worst < found.features[0].worst
+    assert both.rockings
+
+
+def test_the_bracket_with_a_fourth_tip_under_it() -> None:
+    """Its weight, from its URDF, tells which triangles carry it."""
+    bracket = read_layout(Path(__file__).parents[2] / "urdf" / "bracket" / "bracket.layout.yaml")
+    fourth = Element("L7", "locator", np.array([0.008, 0.006, 0.0]), tolerance=20 * UM)
+    bore = feature([0.042, 0.02, 0.005], [0, 0, 1], 100 * UM)
+    verdict = verify(
+        replace(
+            bracket, elements=(*bracket.elements, fourth), key_features=(bore,), require={"locators": ("accurate",)}
+        )
+    )
+    found = verdict.groups["locators"].findings["accurate"].use
+    assert isinstance(found, LocatingErrors)
+    assert found.pressing is not None
+    assert {"L1", "L2", "L3", "L7"} == {name for rocking in found.rockings for name in rocking.contacts}
+    assert verdict.satisfied is Answer.YES
+    assert check(verdict) == []
+
+
 def test_the_checker_refuses_the_opposite_answer() -> None:
-    verdict = verify(layout(1e-3))
+    verdict = verify(layout(21 * UM))
     group = verdict.groups["seated"]
     findings = {**group.findings, "accurate": replace(group.findings["accurate"], answer=Answer.NO)}
     groups = {**verdict.groups, "seated": replace(group, findings=findings)}
@@ -134,11 +199,14 @@ def test_evidence_of_another_kind_is_refused() -> None:
 
 def test_a_worst_over_some_seats_only_is_refused() -> None:
     """The shares are those of the weights, and they are a seat's; but another seat is worse."""
-    better = evidence(asked(FOUR_TWO_ONE, ALIKE, [ABOVE], center=[0.05, -0.02, 0.02])).features[0]
-    finding = asked(FOUR_TWO_ONE, ALIKE, [ABOVE])
-    assert better.worst < 0.9 * evidence(finding).features[0].worst
-    forged = replace(evidence(finding), features=(better,))
-    assert "over all seats" in (accuracy_fault(replace(finding, use=forged), FOUR_TWO_ONE) or "")
+    far = feature([0.05, 0.08, 0.0], [0, 0, 1], 1.0)
+    better = evidence(asked(THREE_TWO_ONE, ALIKE, [far])).features[0]
+    finding = asked(FOUR_TWO_ONE, ALIKE, [far])
+    worst = evidence(finding).features[0]
+    assert better.worst < 0.9 * worst.worst
+    shares = {**better.shares, "G": 0.0}
+    forged = replace(evidence(finding), features=(replace(better, shares=shares, least=worst.least),))
+    assert "worst over all seats" in (accuracy_fault(replace(finding, use=forged), FOUR_TWO_ONE) or "")
 
 
 def refused() -> tuple[Finding, FeatureError]:
