@@ -2,7 +2,8 @@
 
 A seat is a largest set of rows that are independent, by `SEATED`. Rows that depend on no others are in every seat; the
 others fall into groups (two rows are in one if some circuit, a smallest dependent set, has both), and a seat takes a
-largest independent set from each. The groups are the blocks of the projector onto the left null space of the rows, {a : sum a_i d_i = 0}.
+largest independent set from each. The groups are the blocks of the projector onto the left null space of the rows,
+{a : sum a_i d_i = 0}.
 """
 
 from __future__ import annotations
