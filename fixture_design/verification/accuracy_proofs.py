@@ -7,9 +7,11 @@ with their tolerances, and what presses the part. Everything else is worked out 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 
 import numpy as np
 
+from fixture_design.analysis.locating_rows import MAX_BRANCHES
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, motion_scaled, unit_normal
 from fixture_design.layout import Answer, FeatureError, Finding, LocatingErrors, element_name
@@ -44,6 +46,8 @@ def accuracy_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
     if not locators:
         return "without locators nothing is located"
     case = Case(locators, locators[0].dimension)
+    if prod(case.alternatives.values()) > MAX_BRANCHES:
+        return "there are too many choices of alternatives to look at all of them"
     found = _all_branches(evidence, case)
     if isinstance(found, str):
         return found
