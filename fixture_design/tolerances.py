@@ -155,3 +155,11 @@ OFF_SURFACE = 1e-9
 
 #: Sine of the angle between a tip's direction and the surface's normal below which its projection means nothing [-].
 ALONG_NORMAL = 1e-3
+
+#: Walls on both sides of one pin are opposed if their rows differ by less than this [-]: the facets of a slot are
+#: parallel to `COPLANAR_ANGLE`, and what they locate is that well known.
+OPPOSED_WALLS = 2 * COPLANAR_ANGLE
+
+#: Contacts whose smallest singular value is below this hold no part [-]: it would turn by the error of a tip over its
+#: lever, 1e-4 and more, divided by this. What facets leave of parallel walls is far below.
+SEATED = 1e-5

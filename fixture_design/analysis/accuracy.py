@@ -3,19 +3,20 @@ own.
 
 The part rests where d_i . q = s_i, s_i the error of contact i (`locating_rows`). Located exactly once, q = D^-1 s, and
 a feature with the row g = [direction; point X direction] is off by at most the sum of the elements' shares. Located
-more than once, it rests on some of the contacts, a seat, and which depends on the errors and on what presses it: bounds
-are taken over all seats (`seats`) that can carry gravity and the clamps' preloads, or over all there are where these
-are not known. To first order: turns by small angles, and normals that stay.
+more than once, it rests on some of the contacts, a seat (`seats`), and which depends on the errors and on what presses
+it: bounds are taken over all seats that can carry gravity and the clamps' preloads (`resting`). Elements that these do
+not load are taken to touch as far as they can: a part with three pads under it is not left hanging on one edge of one
+and a corner of the next. To first order: turns by small angles, and normals that stay.
 
 yes: no seat lets any feature be off by more than its tolerance. no: a displacement that occurs has a feature off by
-more, and either the seat that it rests on carries what presses the part, or that is not known and every seat's bound is
-beyond the tolerance; or a feature moves with a motion that no locator notices. A tie, or seats that disagree, are
-undecided.
+more, and either the seat that it rests on carries what presses the part, or that is not known and the bound is beyond
+the tolerance on whatever elements the part rests; or a feature moves with a motion that no locator notices. A tie, or
+seats that disagree, are undecided.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,21 +24,29 @@ import numpy as np
 from fixture_design.analysis.branch_accuracy import Blurred, BranchAccuracy, branch_accuracy
 from fixture_design.analysis.locating_rows import MAX_BRANCHES, locating_branches
 from fixture_design.analysis.normal_errors import blur
-from fixture_design.analysis.pressing import pressing_wrench
+from fixture_design.analysis.pressing import pressing_wrench, weight_as_given
 from fixture_design.arrays import Point, Vector
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, FeatureError, Finding, Group, Layout, LocatingErrors, Rocking, element_name
-from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.tolerances import DEFAULT, SEATED, Tolerances
 
 #: Elements named in one reason before it says "and so many more".
 _NAMES_SHOWN = 5
 
 
-def accurate(layout: Layout, group: Group, reference: Point, tolerances: Tolerances = DEFAULT) -> Finding:
+def accurate(
+    layout: Layout,
+    group: Group,
+    reference: Point,
+    tolerances: Tolerances = DEFAULT,
+    weight: Callable[[Layout], Vector | None] = weight_as_given,
+) -> Finding:
     """Whether the group's locators place all key features within their tolerances.
 
     Args:
         reference: about which the errors of the pose are given, in W [m].
+        weight: the wrench [f; m] of gravity about W's origin [N, N m], None where it is not known; asked only where the
+            part is located more than once and gravity acts.
 
     Returns:
         a finding with `LocatingErrors` as its evidence; where nothing could be computed, undecided without.
@@ -52,7 +61,10 @@ def accurate(layout: Layout, group: Group, reference: Point, tolerances: Toleran
     branches = locating_branches(locators, errors, form or 0.0, tolerances)
     if branches is None:
         return _undecided(f"the contacts have more than {MAX_BRANCHES} choices of alternatives")
-    pressing = pressing_wrench(layout, group)
+    pressing = None
+    if any(len(rows.rows) > np.linalg.matrix_rank(rows.rows, tol=SEATED) for rows in branches):
+        known = weight(layout) if group.gravity and layout.gravity is not None else None
+        pressing = pressing_wrench(layout, group, known)
     found: list[BranchAccuracy] = []
     for rows in branches:
         branch = branch_accuracy(rows, layout.key_features, pressing, reference, tolerances)
@@ -64,6 +76,8 @@ def accurate(layout: Layout, group: Group, reference: Point, tolerances: Toleran
     answer, reasons = _answer(found, evidence, unmeasured, tolerances)
     if unmeasured and answer is not Answer.NO:
         reasons.append(f"no tolerance is given for {_list(unmeasured)}: taken as 0")
+    if answer is not Answer.NO and any(branch.assumed for branch in found):
+        reasons.append("elements that nothing known presses: the part is taken to rest on as many as it can")
     return Finding(answer, use=evidence, reason="; ".join(reasons) or None)
 
 

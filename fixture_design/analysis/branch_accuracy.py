@@ -8,12 +8,13 @@ import numpy as np
 
 from fixture_design.analysis.locating_rows import LocatingRows
 from fixture_design.analysis.over_location import rockings
+from fixture_design.analysis.resting import Resting, resting
 from fixture_design.analysis.seat_errors import Displaced, SeatErrors, displaced, seat_errors, slack
-from fixture_design.analysis.seats import Seats, carrying, seats_of
-from fixture_design.arrays import Mask, Point, Rows, Vector, Weights
+from fixture_design.analysis.seats import Seats, seats_of
+from fixture_design.arrays import Point, Rows, Vector, Weights
 from fixture_design.contacts import motion_about_origin
 from fixture_design.layout import FeatureError, KeyFeature, Rocking
-from fixture_design.tolerances import Tolerances
+from fixture_design.tolerances import SEATED, Tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,7 @@ class BranchAccuracy:
         features: in file order; ``worst`` is inf for those in ``free``.
         slack: what the normals' errors may add to each [m].
         pose: about the reference; None where the part is not located.
+        assumed: whether the part was taken to rest on as many elements as it can.
         free: a motion that no contact notices and that moves the feature, by its index.
         shared: names of the elements that some feature depends on, by its index.
     """
@@ -41,6 +43,7 @@ class BranchAccuracy:
     pose: Vector | None
     rockings: tuple[Rocking, ...]
     complete: bool
+    assumed: bool
     free: dict[int, Vector]
     shared: tuple[frozenset[str], ...]
 
@@ -58,20 +61,21 @@ def branch_accuracy(
     if seats is None:
         return Blurred("the contacts' smallest singular value is neither zero nor clear of it")
     whole = len(seats.basis) == rows.rows.shape[1]
-    if rows.doubt.any() and (len(rows.rows) > len(seats.basis) or not whole):
+    if float(np.linalg.norm(rows.doubt)) > (SEATED if whole else 0.0) and (seats.groups or not whole):
         return Blurred("the contacts depend on each other, up to what their normals may be off")
     units = [feature.direction / np.linalg.norm(feature.direction) for feature in features]
     targets = np.array([rows.target(f.point, unit) for f, unit in zip(features, units, strict=True)])
     free = _free(targets, seats, rows, tolerances)
     if free is None:
         return Blurred("a feature's motion along what is not located is neither zero nor clear of it")
-    kept, pressed = carrying(rows.rows, rows.both, seats, _scaled(pressing, rows), tolerances)
+    rest = resting(rows.rows, rows.owner, rows.both, seats, _scaled(pressing, rows), tolerances)
+    kept = rest.kept
     wanted = np.vstack([targets, _pose_targets(rows, reference)]) if whole else targets
     errors = seat_errors(rows, seats, wanted, tolerances)
     spare = np.where(kept[:, None], slack(rows, seats, errors), 0.0).max(axis=0)
     if not np.isfinite(spare).all():
         return Blurred("the contacts' smallest singular value is not clear of what the normals may be off")
-    case = _Case(rows, seats, kept, pressed, errors, spare, tolerances)
+    case = _Case(rows, seats, rest, errors, spare, tolerances)
     found = tuple(
         case.free(feature, unit) if k in free else case.feature(k, feature, unit)
         for k, (feature, unit) in enumerate(zip(features, units, strict=True))
@@ -83,6 +87,7 @@ def branch_accuracy(
         pose=np.where(kept[:, None], errors.bound, 0.0).max(axis=0)[len(features) :] if whole else None,
         rockings=rockings(rows, seats, tolerances) if seats.groups else (),
         complete=seats.complete,
+        assumed=rest.assumed,
         free=free,
         shared=tuple(case.shared(k) for k in range(len(features))),
     )
@@ -127,8 +132,7 @@ class _Case:
 
     rows: LocatingRows
     seats: Seats
-    kept: Mask
-    pressed: bool
+    rest: Resting
     errors: SeatErrors
     slack: Weights
     tolerances: Tolerances
@@ -138,18 +142,19 @@ class _Case:
 
     def feature(self, k: int, feature: KeyFeature, unit: Point) -> FeatureError:
         bounds = self.errors.bound[:, k]
-        worst = int(np.argmax(np.where(self.kept, bounds, -np.inf)))
+        worst = int(np.argmax(np.where(self.rest.kept, bounds, -np.inf)))
         source = int(self.errors.source[worst, k])
         weights = self.errors.weights[source, k]
         shares = self.rows.shares(weights)
         members = sorted({*self.seats.members[source].tolist(), *np.flatnonzero(weights).tolist()})
-        found = self._displaced(k, feature.tolerance, float(bounds[self.kept].min()))
+        least = self._least(bounds)
+        found = self._displaced(k, feature.tolerance, least)
         seat = self.seats.members[worst if found is None else found.seat]
         return FeatureError(
             feature=feature.name,
             tolerance=feature.tolerance,
             worst=float(bounds[worst]),
-            least=float(bounds[self.kept].min()),
+            least=least,
             rss=float(np.linalg.norm(shares)),
             shares=dict(zip(self.rows.elements, shares.tolist(), strict=True)),
             seat=self.rows.names(seat),
@@ -161,19 +166,30 @@ class _Case:
             moves=None if found is None else found.moves,
         )
 
+    def _least(self, bounds: Weights) -> float:
+        """The least over the sets of elements that the part may rest on of the largest bound on each."""
+        if len(bounds) == 1:
+            return float(bounds[0])
+        _, sets = np.unique(self.rest.elements[self.rest.kept], axis=0, return_inverse=True)
+        largest = np.zeros(int(sets.max()) + 1)
+        np.maximum.at(largest, sets.ravel(), bounds[self.rest.kept])
+        # one error and not two that differ by rounding
+        least, worst = float(largest.min()), float(largest.max())
+        return worst if least >= worst * (1 - self.tolerances.tie) else least
+
     def _displaced(self, k: int, tolerance: float, least: float) -> Displaced | None:
         """Only for what may be refused: where what presses the part is known, or every seat's bound is too large."""
         beyond = tolerance * (1 + self.tolerances.tie) + float(self.slack[k])
-        if least <= beyond and not self.pressed:
+        if least <= beyond and not self.rest.pressed:
             return None
         near = self.tolerances.near
-        return displaced(self.rows, self.seats, self.kept, self.errors, k, beyond, near)
+        return displaced(self.rows, self.seats, self.rest.kept, self.errors, k, beyond, near)
 
     def _in_world(self, motion: Weights) -> Vector:
         return motion_about_origin(motion, self.rows.scale.reference, self.rows.scale.length)
 
     def shared(self, k: int) -> frozenset[str]:
         """Elements whose contacts have weight in the feature on some seat, whatever their errors are."""
-        weights = self.errors.weights[self.kept, k]
+        weights = self.errors.weights[self.rest.kept, k]
         some = np.any(np.abs(weights) > self.tolerances.zero * np.abs(weights).max(initial=0.0), axis=0)
         return frozenset(self.rows.elements[e] for e in self.rows.owner[some].tolist())

@@ -25,7 +25,7 @@ import numpy as np
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
 from fixture_design.contacts import Contact, Scale, face_vectors, scale_of, unit_normal
 from fixture_design.layout import element_name
-from fixture_design.tolerances import Tolerances
+from fixture_design.tolerances import OPPOSED_WALLS, Tolerances
 
 #: Branches of contacts with alternatives that are looked at before the answer is given up as undecided.
 MAX_BRANCHES = 64
@@ -153,9 +153,8 @@ def _merged(rows: Rows, owner: Indices, near: float) -> tuple[Mask, Mask]:
     """Which rows stay, and which of these keep the part on both sides: parallel rows of one element are one."""
     kept, both = np.ones(len(rows), dtype=bool), np.zeros(len(rows), dtype=bool)
     alike = owner[:, None] == owner
-    # exact where rows are exact: what differs by less than a tie is one row
     same = alike & (np.abs(rows[:, None] - rows).max(axis=2) <= near)
-    opposed = alike & (np.abs(rows[:, None] + rows).max(axis=2) <= near)
+    opposed = alike & (np.abs(rows[:, None] + rows).max(axis=2) <= OPPOSED_WALLS)
     for row in range(len(rows)):
         if not kept[row]:
             continue

@@ -12,11 +12,14 @@ from fixture_design.layout import Element, Group, Layout, element_name
 from fixture_design.tolerances import DEFAULT
 
 
-def pressing_wrench(layout: Layout, group: Group) -> Vector | None:
-    """[f; m] about W's origin, up to a positive factor, without friction; None where it is not known.
+def pressing_wrench(layout: Layout, group: Group, weight: Vector | None) -> Vector | None:
+    """[f; m] about W's origin [N, N m], without friction; None where it is not known.
 
-    Not known are: clamps, fingers and supports whose force is not given or has no one line of action, gravity on a part
-    without a centre, and beside clamps without a mass. Loads do not count: the part is seated before they act.
+    Not known are clamps, fingers and supports whose force is not given or has no one line of action. Loads do not
+    count: the part is seated before they act.
+
+    Args:
+        weight: the wrench of gravity, None where it is not known.
     """
     pushing = [contact for contact in group.contacts if contact.role != "locator"]
     clamps = _clamp_wrench(layout, pushing)
@@ -24,11 +27,15 @@ def pressing_wrench(layout: Layout, group: Group) -> Vector | None:
         return None
     if not group.gravity or layout.gravity is None or not np.any(layout.gravity):
         return clamps if pushing else None
+    return None if weight is None else clamps + weight
+
+
+def weight_as_given(layout: Layout) -> Vector | None:
+    """[f; m] of gravity from the mass and centre that the layout gives; None if it does not."""
     part = layout.part
-    if part is None or part.center is None or (pushing and part.mass is None):
+    if part is None or part.center is None or part.mass is None or layout.gravity is None:
         return None
-    mass = 1.0 if part.mass is None else part.mass
-    return clamps + _wrench(part.pose.points(part.center[None])[0], mass * layout.gravity)
+    return _wrench(part.pose.points(part.center[None])[0], part.mass * layout.gravity)
 
 
 def _wrench(point: Point, force: Point) -> Vector:

@@ -18,7 +18,7 @@ import numpy as np
 from fixture_design.analysis.lightest import lightest
 from fixture_design.analysis.locating_rows import LocatingRows
 from fixture_design.analysis.seats import Seats, scattered, solved
-from fixture_design.arrays import Indices, Mask, Point, Rows, Vector, Weights
+from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
 from fixture_design.tolerances import Tolerances
 
 #: Seats up to which the bounds of all are compared with each other.
@@ -51,8 +51,14 @@ def seat_errors(rows: LocatingRows, seats: Seats, targets: Rows, tolerances: Tol
         targets: shape (k, d), each in the span of the rows.
     """
     weights = scattered(solved(rows.rows, seats, targets), seats, len(rows.rows))
-    if len(rows.rows) > len(seats.basis):
-        weights = lightest(weights, rows.rows, rows.normals, rows.both, rows.owner, rows.radius, tolerances.near)
+    if len(rows.rows) > len(seats.basis) and np.sum(rows.both) > 1:
+        weights = lightest(weights, rows.rows, rows.normals, rows.both, rows.owner, rows.radius)
+        left = targets - weights @ rows.rows
+        # walls of pins depend on each other only up to the facets' rounding
+        missing = np.linalg.solve(
+            (rows.rows[seats.members] @ seats.basis.T).transpose(0, 2, 1), (left @ seats.basis.T).transpose(0, 2, 1)
+        )
+        weights = weights + scattered(missing.transpose(0, 2, 1), seats, len(rows.rows))
     own = rows.shares(weights).sum(axis=-1)
     source = np.broadcast_to(np.arange(len(own))[:, None], own.shape)
     if not 1 < len(own) <= MAX_COMPARED:
@@ -121,7 +127,7 @@ def displaced(
 
 def _extreme(
     rows: LocatingRows, seats: Seats, seat: int, weights: Weights, sign: float, rest: float, near: float
-) -> tuple[Vector, Rows]:
+) -> tuple[Vector, Points]:
     """The displacement with all elements that count at their extremes, the others ``rest`` of theirs towards the part.
 
     Returns:
@@ -151,7 +157,7 @@ def _outward(rows: LocatingRows, element: int) -> Point:
     return total / length if length > 0 else total
 
 
-def _free_of_others(rows: LocatingRows, motion: Vector, moves: Rows, near: float) -> bool:
+def _free_of_others(rows: LocatingRows, motion: Vector, moves: Points, near: float) -> bool:
     """Whether d_i . q <= n_i . u + form for all rows, with equality for those on both sides, and |u| <= radius."""
     gaps = np.sum(rows.normals * moves[rows.owner], axis=1) + rows.form - rows.rows @ motion
     largest = near * max(float(np.abs(motion).max()), float(rows.radius.max()))

@@ -1,8 +1,9 @@
 """Seats: the sets of contacts that a part may rest on where it is located more than once.
 
-A seat is a largest set of independent rows. Rows that depend on no others are in every seat; the others fall into
-groups (two rows are in one if some circuit, a smallest dependent set, has both), and a seat takes a largest independent
-set from each. The groups are the blocks of the projector onto the left null space of the rows, {a : sum a_i d_i = 0}.
+A seat is a largest set of rows that are independent, by `SEATED`. Rows that depend on no others are in every seat; the
+others fall into groups (two rows are in one if some circuit, a smallest dependent set, has both), and a seat takes a
+largest independent set from each. The groups are the blocks of the projector onto the left null space of the rows,
+{a : sum a_i d_i = 0}.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from math import comb, prod
 
 import numpy as np
 
-from fixture_design.arrays import Mask, Rows, Vector
-from fixture_design.tolerances import SUM_ROUNDING, Tolerances
+from fixture_design.arrays import Rows
+from fixture_design.tolerances import SEATED, SUM_ROUNDING, Tolerances
 
 #: Sets of contacts looked at before the list of seats is cut off.
 MAX_SEATS = 5000
@@ -29,7 +30,7 @@ class Seats:
         basis: orthonormal rows that span what the contacts locate, shape (r, d).
         smallest: the smallest singular value of each seat's rows, shape (n,).
         groups: rows that depend on each other, several a group.
-        complete: False where there were too many to list, or some are neither seats nor clearly none.
+        complete: False where there were too many to list.
     """
 
     members: np.ndarray
@@ -46,23 +47,22 @@ class Seats:
 
 
 def seats_of(rows: Rows, tolerances: Tolerances) -> Seats | None:
-    """The seats of dimensionless rows, shape (m, d); None where the rank is neither one nor the next."""
+    """The seats of dimensionless rows, shape (m, d); None where not all is located, up to rounding."""
     left, values, right = np.linalg.svd(rows, full_matrices=False)
-    if np.any((values > tolerances.zero) & (values <= tolerances.near)):
+    rank = int(np.sum(values > SEATED))
+    if rank < rows.shape[1] and np.any(values[rank:] > tolerances.zero):
         return None
-    rank = int(np.sum(values > tolerances.near))
     basis = right[:rank]
     if rank == len(rows):
         return Seats(np.arange(rank)[None], basis, values[rank - 1 : rank], (), True)
     projector = np.eye(len(rows)) - left[:, :rank] @ left[:, :rank].T
-    groups = _blocks(np.abs(projector) > tolerances.zero)
+    groups = _blocks(np.abs(projector) > SEATED)
     sizes = [(group, round(sum(1.0 - projector[i, i] for i in group))) for group in groups]
     listed = islice(product(*(combinations(group, size) for group, size in sizes)), MAX_SEATS)
     chosen = np.array([sorted(sum(parts, ())) for parts in listed], dtype=np.int64).reshape(-1, rank)
     smallest = np.linalg.svd(rows[chosen] @ basis.T, compute_uv=False)[:, -1] if rank else np.ones(len(chosen))
-    good = smallest > tolerances.near
-    doubtful = bool(np.any(~good & (smallest > tolerances.zero)))
-    complete = prod(comb(len(group), size) for group, size in sizes) <= MAX_SEATS and not doubtful
+    good = smallest > SEATED
+    complete = prod(comb(len(group), size) for group, size in sizes) <= MAX_SEATS
     dependent = tuple(group for group in groups if len(group) > 1)
     return Seats(chosen[good], basis, smallest[good], dependent, complete)
 
@@ -78,30 +78,6 @@ def _blocks(linked: np.ndarray) -> list[tuple[int, ...]]:
         left -= group
         groups.append(tuple(sorted(group)))
     return groups
-
-
-def carrying(rows: Rows, both: Mask, seats: Seats, wrench: Vector | None, tolerances: Tolerances) -> tuple[Mask, bool]:
-    """Which seats can carry a wrench without friction, or cannot be proved not to, and whether it told them apart.
-
-    A contact pushes the part along -d_i, so that w = sum N_i d_i with N_i >= 0, of any sign for rows that keep the part
-    on both sides.
-
-    Args:
-        wrench: dimensionless like the rows, of any size, shape (d,); None tells nothing.
-
-    Returns:
-        all seats and False where the wrench is not known, or no seat carries it.
-    """
-    every = np.ones(len(seats.members), dtype=bool)
-    if wrench is None or not np.any(wrench):
-        return every, False
-    unit = wrench / np.linalg.norm(wrench)
-    if np.linalg.norm(unit - (unit @ seats.basis.T) @ seats.basis) > tolerances.zero:
-        return every, False
-    forces = solved(rows, seats, unit[None])[:, 0]
-    lowest = np.where(both[seats.members], 0.0, forces).min(axis=1)
-    carry = lowest >= -tolerances.near * np.abs(forces).max(axis=1)
-    return (carry, True) if carry.any() else (every, False)
 
 
 def solved(rows: Rows, seats: Seats, targets: Rows) -> np.ndarray:

@@ -23,7 +23,8 @@ class FeatureError:
         feature: its name.  tolerance: allowed.
         worst: the largest error, all elements at the ends of their tolerances, over all seats the part may take; inf
             where the feature moves freely.
-        least: the largest error in the best of these seats; ``worst`` where there is only one.
+        least: the largest error with the best of the sets of elements that these seats are on; ``worst`` where there is
+            only one.
         rss: root sum square of the elements' shares, in the worst seat.
         shares: for each element its part of ``worst``, >= 0; they add up to it.
         seat: names of the contacts that the part sits on in the worst case.
@@ -76,7 +77,8 @@ class LocatingErrors:
         errors: how far each element's position may be off [m]: tolerance and half the clearance.
         form: how far each touched point of the part's surface may be off, besides [m].
         pressing: a wrench that holds the part on its seat, about W's origin, up to a positive factor; seats that cannot
-            carry it are no seats. None where it is not known.
+            carry it are no seats. None where it is not known. Of seats on which it loads the same elements, those count
+            that rest on most elements.
         costliest: the element whose error costs most of the feature that uses most of its tolerance; None without.
         rockings: where the part is located more than once.
         motion: where it is not located at all, a motion that no locator notices; else None.

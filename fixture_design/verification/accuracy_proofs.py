@@ -7,13 +7,15 @@ with their tolerances, and what presses the part. Everything else is worked out 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 
 import numpy as np
 
+from fixture_design.analysis.locating_rows import MAX_BRANCHES
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, motion_scaled, unit_normal
 from fixture_design.layout import Answer, FeatureError, Finding, LocatingErrors, element_name
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import DEFAULT, SEATED
 from fixture_design.verification.proofs import Case
 from fixture_design.verification.seats_again import (
     BranchAgain,
@@ -44,11 +46,13 @@ def accuracy_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
     if not locators:
         return "without locators nothing is located"
     case = Case(locators, locators[0].dimension)
+    if prod(case.alternatives.values()) > MAX_BRANCHES:
+        return "there are too many choices of alternatives to look at all of them"
     found = _all_branches(evidence, case)
     if isinstance(found, str):
         return found
     for k, feature in enumerate(evidence.features):
-        fault = _feature_fault(feature, evidence, case) or _extent_fault(feature, found[k])
+        fault = _feature_fault(feature, evidence, case) or _extent_fault(feature, found[k], _tiny(evidence, case))
         if fault is not None:
             return f"{feature.feature}: {fault}"
     return (
@@ -72,6 +76,11 @@ def _numbers_fault(evidence: LocatingErrors, locators: Sequence[Contact]) -> str
         return "an error or a tolerance is no length"
     units = [float(np.linalg.norm(feature.direction)) for feature in evidence.features]
     return None if np.allclose(units, 1.0, rtol=0, atol=SAME_ERROR) else "a direction is not of length one"
+
+
+def _tiny(evidence: LocatingErrors, case: Case) -> float:
+    """Errors up to this are what rounding leaves of zero [m]."""
+    return case.limit * (max(evidence.errors.values()) + evidence.form)
 
 
 def _motion_fault(evidence: LocatingErrors, locators: Sequence[Contact]) -> str | None:
@@ -117,9 +126,13 @@ class _Extent:
     def __init__(self) -> None:
         self.worst, self.least, self.slack = 0.0, np.inf, 0.0
 
-    def add(self, bounds: np.ndarray, slack: np.ndarray) -> None:
+    def add(self, bounds: np.ndarray, slack: np.ndarray, elements: Sequence[frozenset[str]]) -> None:
+        """Of the seats of one branch, each with the elements that it rests on."""
         self.worst = max(self.worst, float(bounds.max()))
-        self.least = min(self.least, float(bounds.min()))
+        largest: dict[frozenset[str], float] = {}
+        for bound, rests_on in zip(bounds.tolist(), elements, strict=True):
+            largest[rests_on] = max(largest.get(rests_on, 0.0), bound)
+        self.least = min(self.least, *largest.values())
         self.slack = max(self.slack, float(slack.max()))
 
 
@@ -140,7 +153,8 @@ def _all_branches(evidence: LocatingErrors, case: Case) -> list[_Extent] | str:
         outside = np.linalg.norm(wanted - wanted @ seats.basis.T @ seats.basis, axis=1)
         if np.any(outside > branch.near * np.linalg.norm(wanted, axis=1)):
             return "a feature moves along what is not located"
-        if branch.doubt.any() and len(seats.basis) < max(len(branch.rows), case.dimension):
+        whole, over = len(seats.basis) == case.dimension, len(branch.rows) > len(seats.basis)
+        if np.linalg.norm(branch.doubt) > (SEATED if whole else 0.0) and (over or not whole):
             return "the contacts depend on each other, up to what their normals may be off"
         kept, _ = kept_again(branch, seats, _scaled(evidence.pressing, case))
         weights = branch.lightest(seats.weights(wanted, len(branch.rows)), evidence.errors, evidence.form)
@@ -149,8 +163,9 @@ def _all_branches(evidence: LocatingErrors, case: Case) -> list[_Extent] | str:
             return "the weights of the seats do not make the features' rows"
         own = branch.shares(weights, evidence.errors, evidence.form).sum(axis=-1)
         bounds, slack = bounds_again(branch, seats, weights, own), _slack(branch, seats, weights, evidence)
+        elements = [on for on, keep in zip(branch.touched(seats), kept.tolist(), strict=True) if keep]
         for k, extent in enumerate(extents):
-            extent.add(bounds[kept, k], slack[kept, k])
+            extent.add(bounds[kept, k], slack[kept, k], elements)
     return extents
 
 
@@ -190,13 +205,14 @@ def _feature_fault(feature: FeatureError, evidence: LocatingErrors, case: Case) 
         if left > case.limit * max(np.abs(weights).max(), np.linalg.norm(target)):
             return "the weights do not make the feature's row"
         shares = branch.shares(weights, evidence.errors, evidence.form)
-        return _shares_fault(feature, dict(zip(branch.elements, shares.tolist(), strict=True)))
+        found = dict(zip(branch.elements, shares.tolist(), strict=True))
+        return _shares_fault(feature, found, _tiny(evidence, case))
     return "the rows are not those of one choice of alternatives"
 
 
-def _shares_fault(feature: FeatureError, found: dict[str, float]) -> str | None:
+def _shares_fault(feature: FeatureError, found: dict[str, float], tiny: float) -> str | None:
     """Stated shares, their sum and their root sum square."""
-    limit = SAME_ERROR * max(feature.worst, sum(found.values()))
+    limit = SAME_ERROR * sum(found.values()) + tiny
     if set(feature.shares) != set(found):
         return "the shares are not those of its elements"
     wrong = [name for name, share in found.items() if not abs(feature.shares[name] - share) <= limit]
@@ -208,8 +224,8 @@ def _shares_fault(feature: FeatureError, found: dict[str, float]) -> str | None:
     return None if abs(root - feature.rss) <= limit else f"the root sum square is {root:.3e}, not {feature.rss:.3e}"
 
 
-def _extent_fault(feature: FeatureError, extent: _Extent) -> str | None:
-    limit = SAME_ERROR * extent.worst
+def _extent_fault(feature: FeatureError, extent: _Extent, tiny: float) -> str | None:
+    limit = SAME_ERROR * extent.worst + tiny
     if not abs(feature.worst - extent.worst) <= limit:
         return f"the worst over all seats is {extent.worst:.3e}, not {feature.worst:.3e}"
     if not abs(feature.least - extent.least) <= limit:
@@ -223,8 +239,10 @@ def _answer_fault(
     """Whether the extents say what the answer says."""
     count = len(evidence.features)
     pose = [] if evidence.pose is None else evidence.pose.tolist()
+    # metres, then radians
+    tiny = _tiny(evidence, case) * max(1.0, 1.0 / case.scale.length)
     for stated, extent in zip(pose, extents[count:], strict=True):
-        if not abs(stated - extent.worst) <= SAME_ERROR * extent.worst:
+        if not abs(stated - extent.worst) <= SAME_ERROR * extent.worst + tiny:
             return f"an error of the pose is {extent.worst:.3e}, not {stated:.3e}"
     pairs = list(zip(evidence.features, extents, strict=False))
     if answer is Answer.YES:
@@ -312,7 +330,7 @@ def _rockings_fault(evidence: LocatingErrors, case: Case) -> str | None:
         if len(members) != len(rocking.contacts):
             return f"some of {names} are no locators"
         rows = np.vstack([case.rows(c, unit_normal(n)[None]) for c in members for n in c.normals])
-        if np.linalg.matrix_rank(rows, tol=case.near) == len(rows):
+        if np.linalg.matrix_rank(rows, tol=SEATED) == len(rows):
             return f"{names} do not depend on each other"
         moved = np.abs(rows @ motion_scaled(rocking.motion, case.scale.reference, case.scale.length))
         if not np.any(np.abs(moved - rocking.size) <= SAME_ERROR * rocking.size):

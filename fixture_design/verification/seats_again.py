@@ -15,10 +15,10 @@ import numpy as np
 from fixture_design.analysis.lightest import lightest
 from fixture_design.analysis.seat_errors import MAX_COMPARED
 from fixture_design.analysis.seats import MAX_SEATS
-from fixture_design.arrays import Point, Rows, Vector
+from fixture_design.arrays import Point, Points, Rows, Vector
 from fixture_design.contacts import Contact, unit_normal
 from fixture_design.layout import element_name
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import DEFAULT, OPPOSED_WALLS, SEATED
 from fixture_design.verification.proofs import Case
 
 
@@ -27,7 +27,7 @@ class BranchAgain:
     """One choice of alternatives: rows, their unit normals, (contact, normal) and element; see `LocatingRows`."""
 
     rows: Rows
-    normals: Rows
+    normals: Points
     places: tuple[tuple[str, int], ...]
     owners: tuple[str, ...]
     doubt: np.ndarray
@@ -39,6 +39,10 @@ class BranchAgain:
     def elements(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(self.owners))
 
+    def touched(self, seats: SeatsAgain) -> list[frozenset[str]]:
+        """The elements that each seat rests on."""
+        return [frozenset(self.owners[i] for i in members) for members in seats.members.tolist()]
+
     def walls(self, element: str) -> bool:
         """Whether an element's rows all keep the part on both sides."""
         return all(both for both, owner in zip(self.both, self.owners, strict=True) if owner == element)
@@ -48,7 +52,7 @@ class BranchAgain:
         elements = self.elements
         owner = np.array([elements.index(name) for name in self.owners], dtype=np.int64)
         radius = np.array([errors[name] + form * self.walls(name) for name in elements])
-        return lightest(weights, self.rows, self.normals, self.both, owner, radius, self.near)
+        return lightest(weights, self.rows, self.normals, self.both, owner, radius)
 
     def shares(self, weights: np.ndarray, errors: Mapping[str, float], form: float) -> np.ndarray:
         """What each element moves a feature of these row weights (..., m) by, shape (..., e)."""
@@ -81,10 +85,10 @@ def _branch(case: Case, places: tuple[tuple[Contact, int], ...]) -> BranchAgain:
     both: list[bool] = []
     for i, row in enumerate(rows):
         others = [rows[j] for j in range(len(rows)) if owners[j] == owners[i]]
-        if any(owners[j] == owners[i] and _parallel(rows[j], row, case.near) for j in kept):
+        if any(owners[j] == owners[i] and _one_row(rows[j], row, case.near) for j in kept):
             continue
         kept.append(i)
-        both.append(any(np.abs(other + row).max() <= case.near for other in others))
+        both.append(any(np.abs(other + row).max() <= OPPOSED_WALLS for other in others))
     return BranchAgain(
         rows=rows[kept],
         normals=np.array(units)[kept],
@@ -97,8 +101,9 @@ def _branch(case: Case, places: tuple[tuple[Contact, int], ...]) -> BranchAgain:
     )
 
 
-def _parallel(first: Vector, second: Vector, near: float) -> bool:
-    return bool(min(np.abs(first - second).max(), np.abs(first + second).max()) <= near)
+def _one_row(first: Vector, second: Vector, near: float) -> bool:
+    """Whether two rows of one element are the same, or opposed."""
+    return bool(np.abs(first - second).max() <= near or np.abs(first + second).max() <= OPPOSED_WALLS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,51 +131,69 @@ class SeatsAgain:
 def seats_again(branch: BranchAgain) -> SeatsAgain | str:
     """All seats of a branch, or why they are not known."""
     _, values, right = np.linalg.svd(branch.rows, full_matrices=False)
-    rank = int(np.sum(values > branch.near))
+    if np.any((values <= SEATED) & (values > branch.near)) and np.sum(values > SEATED) < branch.rows.shape[1]:
+        return "the rank is neither one nor the next"
+    rank = int(np.sum(values > SEATED))
     basis = right[:rank]
     inside = branch.rows @ basis.T
-    groups = _groups(inside, branch.near)
+    groups = _groups(inside)
     options = [list(combinations(group, size)) for group, size in groups]
     listed = list(islice(product(*options), MAX_SEATS + 1))
     if len(listed) > MAX_SEATS:
         return "there are too many seats to look at all of them"
     sets = np.array([sorted(sum(parts, ())) for parts in listed], dtype=np.int64)
     smallest = np.linalg.svd(inside[sets], compute_uv=False)[:, -1]
-    good = smallest > branch.near
-    if np.any(~good & (smallest > branch.near / DEFAULT.band**2)):
-        return "some contacts are neither dependent nor clearly independent"
+    good = smallest > SEATED
     return SeatsAgain(sets[good], np.linalg.inv(inside[sets[good]]), basis, smallest[good])
 
 
-def _groups(rows: Rows, near: float) -> list[tuple[tuple[int, ...], int]]:
+def _groups(rows: Rows) -> list[tuple[tuple[int, ...], int]]:
     """Rows that depend on each other through fundamental circuits, with how many of them are independent."""
     basis: list[int] = []
     for i in range(len(rows)):
-        if len(basis) < rows.shape[1] and np.linalg.svd(rows[[*basis, i]], compute_uv=False)[-1] > near:
+        if len(basis) < rows.shape[1] and np.linalg.svd(rows[[*basis, i]], compute_uv=False)[-1] > SEATED:
             basis.append(i)
     groups = [{i} for i in basis]
     for i in sorted(set(range(len(rows))) - set(basis)):
         parts = rows[i] @ np.linalg.inv(rows[basis])
-        circuit = {i, *(basis[k] for k in np.flatnonzero(np.abs(parts) > near / DEFAULT.band**2))}
+        circuit = {i, *(basis[k] for k in np.flatnonzero(np.abs(parts) > SEATED))}
         joined = circuit.union(*(group for group in groups if group & circuit))
         groups = [*(group for group in groups if not group & circuit), joined]
     return [(tuple(sorted(group)), len(group & set(basis))) for group in groups]
 
 
 def kept_again(branch: BranchAgain, seats: SeatsAgain, wrench: Vector | None) -> tuple[np.ndarray, bool]:
-    """Seats that carry a dimensionless wrench, w = sum N_i d_i with N_i >= 0 but for both-sided rows, and True.
+    """Seats that carry a dimensionless wrench, and whether one is known that some carry.
 
-    All, and False, where it is not known or none carries it.
+    w = sum N_i d_i with N_i >= 0 but for both-sided rows; of those that load the same elements the ones on most.
     """
-    every = np.ones(len(seats.members), dtype=bool)
+    loads = _loads(branch, seats, wrench)
+    pressed = any(load is not None for load in loads)
+    if not pressed:
+        loads = [frozenset() for _ in loads]
+    on = branch.touched(seats)
+    most: dict[frozenset[str], int] = {}
+    for load, elements in zip(loads, on, strict=True):
+        if load is not None:
+            most[load] = max(most.get(load, 0), len(elements))
+    kept = [load is not None and len(elements) == most[load] for load, elements in zip(loads, on, strict=True)]
+    return np.array(kept), pressed
+
+
+def _loads(branch: BranchAgain, seats: SeatsAgain, wrench: Vector | None) -> list[frozenset[str] | None]:
+    """The elements that each seat carries a wrench with; None for seats that do not."""
+    nothing: list[frozenset[str] | None] = [None] * len(seats.members)
     if wrench is None or not np.any(wrench):
-        return every, False
+        return nothing
     unit = wrench / np.linalg.norm(wrench)
     if np.linalg.norm(unit - unit @ seats.basis.T @ seats.basis) > branch.near / DEFAULT.band**2:
-        return every, False
-    forces = seats.weights(unit[None], len(branch.rows))[:, 0]
-    pulling = np.where(branch.both, 0.0, forces).min(axis=1) < -branch.near * np.abs(forces).max(axis=1)
-    return (every, False) if pulling.all() else (~pulling, True)
+        return nothing
+    loads = nothing
+    for seat, forces in enumerate(seats.weights(unit[None], len(branch.rows))[:, 0]):
+        limit = branch.near * np.abs(forces).max()
+        if np.all((forces >= -limit) | branch.both):
+            loads[seat] = frozenset(branch.owners[i] for i in np.flatnonzero(np.abs(forces) > limit))
+    return loads
 
 
 def bounds_again(branch: BranchAgain, seats: SeatsAgain, weights: np.ndarray, own: np.ndarray) -> np.ndarray:

@@ -6,17 +6,23 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from fixture_design.analysis import accurate
+from fixture_design.arrays import Vector
 from fixture_design.layout import Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
 from fixture_design.verification.force_questions import holds_loads, seated
 from fixture_design.verification.found import FoundContacts
 from fixture_design.verification.loading import loadable
+from fixture_design.verification.weight import weight_of
 
 UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
 
 
 def _accurate(layout: Layout, group: Group, found: FoundContacts, tolerances: Tolerances) -> Finding:
-    return accurate(layout, group, found.report.reference, tolerances)
+    def weight(of: Layout) -> Vector | None:
+        known = weight_of(of, found)
+        return None if isinstance(known, str) else known.wrench
+
+    return accurate(layout, group, found.report.reference, tolerances, weight)
 
 
 #: In the order they are reported.
