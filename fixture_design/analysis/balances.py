@@ -10,7 +10,7 @@ import numpy as np
 
 from fixture_design.analysis.contact_forces import ForceCones
 from fixture_design.arrays import Rows, Vector
-from fixture_design.tolerances import CARRIES, WITNESS, ZERO_ROW
+from fixture_design.tolerances import CARRIES, SUM_ROUNDING, WITNESS, ZERO_ROW
 
 #: Steps of a correction; each squares the error.
 _STEPS = 4
@@ -32,9 +32,10 @@ def repaired_forces(cones: ForceCones, wrench: Vector, x: Vector) -> tuple[Vecto
         left = wrench + cones.maps @ x
         size = max(float(np.linalg.norm(wrench)), float(np.abs(x).max(initial=0.0)), ZERO_ROW)
         relative = float(np.linalg.norm(left)) / size
-        if relative < least:
-            best, least = x, relative
-        if relative <= np.finfo(np.float64).eps:
+        if relative >= least:
+            break
+        best, least = x, relative
+        if relative <= SUM_ROUNDING:
             break
         room = metric(cones, x)
         gram = cones.maps @ room @ cones.maps.T
@@ -111,7 +112,9 @@ def repaired_motion(cones: ForceCones, motion: Vector, square: Vector | None = N
             rows, misses = _touching(cones, found, near)
             if square is not None:
                 rows, misses = np.vstack([rows, square]), np.append(misses, -(square @ found))
-            found = found + np.linalg.pinv(rows, rcond=WITNESS) @ misses if len(rows) else found
+            if not np.abs(misses).max(initial=0.0) > np.finfo(np.float64).eps:
+                break
+            found = found + np.linalg.pinv(rows, rcond=WITNESS) @ misses
             length = float(np.linalg.norm(found))
             if length < 0.5:
                 break

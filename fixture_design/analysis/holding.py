@@ -13,7 +13,6 @@ from typing import Literal
 import numpy as np
 
 from fixture_design.analysis.acting import LoadRow
-from fixture_design.analysis.balances import repaired_motion
 from fixture_design.analysis.balancing import ForceBranch, Settled, branches_of, settle
 from fixture_design.analysis.contact_forces import ContactForces
 from fixture_design.analysis.loads import largest_factors
@@ -65,7 +64,7 @@ def _held(
     ranges = [factor_range(branch, constant, row.wrench) for branch in looked_at]
     best = max(ranges, key=lambda found: found.reserve)
     reserve = None if best.reserve[1] < 0 else (max(best.reserve[0], 0.0), best.reserve[1])
-    needed = max(0.0, best.needed[1]) if np.isfinite(best.needed[1]) else 0.0
+    needed = max(0.0, next(filter(np.isfinite, best.needed[::-1]), 0.0))
     answer, reason = _answer(settled, ranges)
     verdict = LoadVerdict(row.load, row.row, answer, reserve, needed, None, best.first, reason)
     return _with_proof(verdict, settled)
@@ -135,7 +134,7 @@ def _ends(
     found = largest_factors(forces.cones, fixed, np.array([along, -along]))
     brackets = [(_rounded(low), _rounded(high)) for low, high in zip(found.lower, found.upper, strict=True)]
     first: First = ()
-    if np.isfinite(brackets[0][1]):
+    if np.isfinite(brackets[0][1]) and np.any(found.motions[0]):
         first = giving_way(forces, found.forces[0], found.motions[0], found.forces[1])
     return brackets[0], brackets[1], first
 
@@ -151,10 +150,7 @@ def giving_way(forces: ContactForces, x: Vector, motion: Vector, other: Vector) 
     Of those that lift, the ones that carry in ``other``, the forces under another factor, if there are any: what never
     carries does not give way.
     """
-    unit = repaired_motion(forces.cones, motion)
-    if unit is None:
-        return ()
-    products = forces.cones.maps.T @ unit
+    products = forces.cones.maps.T @ (motion / np.linalg.norm(motion))
     largest = float(np.abs(x).max(initial=0.0))
     least = CARRIES * max(largest, float(np.abs(other).max(initial=0.0)))
     found: dict[str, Literal["slips", "lifts"]] = {}

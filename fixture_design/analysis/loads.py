@@ -18,7 +18,7 @@ import numpy as np
 from fixture_design.analysis.balances import repaired_forces, repaired_motion, surplus
 from fixture_design.analysis.contact_forces import ForceCones
 from fixture_design.arrays import Rows, Vector, Weights
-from fixture_design.tolerances import CARRIES, WITNESS
+from fixture_design.tolerances import CARRIES, SOLVED, WITNESS
 
 #: What Clarabel is asked for [-]; it stops sooner where it gets no further.
 _SOLVER_TOLERANCE = 1e-12
@@ -126,7 +126,8 @@ def _largest_factor(cones: ForceCones, fixed: Vector, load: Vector) -> tuple[flo
     motion = _bounding(cones, -solved.dual, load)
     upper = np.inf if motion is None else -surplus(cones, motion, fixed)
     x, left = repaired_forces(cones, fixed + solved.y[0] * load, solved.x)
-    if motion is not None and solved.found and left <= WITNESS:
+    # where friction is at its limit nothing has room, and the forces stay as they were found
+    if motion is not None and solved.found and left <= SOLVED:
         return min(float(solved.y[0]), upper), upper, x, motion
     return _unusual(cones, fixed, load, upper, motion)
 
