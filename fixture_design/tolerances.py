@@ -77,7 +77,7 @@ MOST_FORCE = 1e12
 MOST_MASS = 1e9
 
 #: Accelerations above this are mistakes [m/s^2].
-MOST_GRAVITY = 1e6
+MOST_GRAVITY = 1e9
 
 #: Stiffer contacts than this are mistakes [N/m]: steel cubes of a kilometre.
 MOST_STIFFNESS = 1e15

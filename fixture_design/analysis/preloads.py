@@ -16,7 +16,7 @@ from fixture_design.analysis.balancing import ForceBranch, branches_of
 from fixture_design.analysis.contact_forces import ContactForces, ForceCones, contact_forces
 from fixture_design.analysis.holding import held_loads
 from fixture_design.analysis.loads import solve_cones
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, LoadVerdict, element_name
 from fixture_design.tolerances import LOAD_TIE, Tolerances
@@ -121,8 +121,8 @@ def _with_free_preloads(contacts: Sequence[Contact], fixed: Mapping[str, float],
 
 
 def _joined(
-    forces: ContactForces, targets: Sequence[Vector], pushing: np.ndarray
-) -> tuple[ForceCones, np.ndarray, Vector]:
+    forces: ContactForces, targets: Sequence[Weights], pushing: np.ndarray
+) -> tuple[ForceCones, np.ndarray, Weights]:
     """The balances of all targets side by side, each with rows  sum N - preload = 0  of its own."""
     heads = np.zeros((len(pushing), forces.cones.maps.shape[1]))
     heads[:, forces.cones.starts] = pushing
@@ -137,8 +137,8 @@ def _joined(
 
 
 def _bounded(
-    cones: ForceCones, columns: np.ndarray, sides: Vector, low: Vector, high: Vector
-) -> tuple[ForceCones, np.ndarray, Vector]:
+    cones: ForceCones, columns: np.ndarray, sides: Weights, low: Weights, high: Weights
+) -> tuple[ForceCones, np.ndarray, Weights]:
     """low <= y <= high, with slacks as cones of size 1."""
     count, height = len(low), len(cones.maps)
     one, width = np.eye(count), cones.maps.shape[1]
