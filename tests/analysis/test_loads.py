@@ -101,8 +101,8 @@ def test_the_weight_holds_by_hand():
     assert press.reserve == (np.inf, np.inf)
     corner = cut([0.2, 0.1, 0.05], [0, 0, -1], "corner")
     (tipped,) = asked(block(loads=(corner,)), "holds_loads").use.loads
-    # about the line S2-S3: normal (0.06, 0.08), the weight 0.0024 inside of it and the load 0.0064 outside
-    assert tipped.reserve == pytest.approx((WEIGHT * 0.0024 / 0.0064,) * 2)
+    # the weight is inside of the line S2-S3, 0.06 x + 0.08 y = 0.0124, by 0.0024 and the load outside by 0.0076
+    assert tipped.reserve == pytest.approx((WEIGHT * 0.0024 / 0.0076,) * 2)
     assert tipped.first == (("S1", "lifts"),)
 
 
