@@ -77,7 +77,7 @@ MOST_FORCE = 1e12
 MOST_MASS = 1e9
 
 #: Accelerations above this are mistakes [m/s^2].
-MOST_GRAVITY = 1e6
+MOST_GRAVITY = 1e9
 
 #: Stiffer contacts than this are mistakes [N/m]: steel cubes of a kilometre.
 MOST_STIFFNESS = 1e15
@@ -87,6 +87,9 @@ LOAD_TIE = 1e-6
 
 #: Contacts carry a force, and points move, if it is more than this of the largest one [-]: above what solvers leave.
 CARRIES = 1e-6
+
+#: Forces at the limit of friction that leave no more than this were found [-]; what is proved leaves less.
+SOLVED = 1e-8
 
 #: Branches of alternatives that are looked at for forces; with more, what the first leave open is undecided.
 MOST_FORCE_BRANCHES = 64

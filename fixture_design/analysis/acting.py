@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Point, Vector
+from fixture_design.arrays import Point, Vector, Weights
 from fixture_design.contacts import Contact, cross
 from fixture_design.layout import Group, Layout, Load, element_name
 
@@ -35,7 +35,7 @@ def gravity_wrench(layout: Layout, group: Group) -> Vector | str:
     return wrench_at(part.pose.points(np.asarray(part.center)[None])[0], force)
 
 
-def wrench_at(point: Point, force: Point, moment: Vector | None = None) -> Vector:
+def wrench_at(point: Point, force: Point, moment: Weights | None = None) -> Weights:
     """[f; p X f + m]: a force in a point, and a free moment, about the origin."""
     turning = cross(np.asarray(point)[None], np.asarray(force)[None])[0]
     return np.concatenate([force, turning if moment is None else turning + moment])

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from fixture_design.analysis.contact_forces import ForceCones
-from fixture_design.arrays import Rows, Vector
-from fixture_design.tolerances import CARRIES, WITNESS, ZERO_ROW
+from fixture_design.arrays import Weights
+from fixture_design.tolerances import CARRIES, SUM_ROUNDING, WITNESS, ZERO_ROW
 
 #: Steps of a correction; each squares the error.
 _STEPS = 4
@@ -18,7 +18,7 @@ _STEPS = 4
 _NEAR_SURFACE = (1e-5, 1e-7, 1e-9)
 
 
-def repaired_forces(cones: ForceCones, wrench: Vector, x: Vector) -> tuple[Vector, float]:
+def repaired_forces(cones: ForceCones, wrench: Weights, x: Weights) -> tuple[Weights, float]:
     """x in the cones with  wrench + maps @ x = 0  as nearly as it can be, and what is left.
 
     The step to the balance is the shortest in the metric of each cone's barrier, so that what has no room stays.
@@ -32,9 +32,10 @@ def repaired_forces(cones: ForceCones, wrench: Vector, x: Vector) -> tuple[Vecto
         left = wrench + cones.maps @ x
         size = max(float(np.linalg.norm(wrench)), float(np.abs(x).max(initial=0.0)), ZERO_ROW)
         relative = float(np.linalg.norm(left)) / size
-        if relative < least:
-            best, least = x, relative
-        if relative <= np.finfo(np.float64).eps:
+        if relative >= least:
+            break
+        best, least = x, relative
+        if relative <= SUM_ROUNDING:
             break
         room = metric(cones, x)
         gram = cones.maps @ room @ cones.maps.T
@@ -42,7 +43,7 @@ def repaired_forces(cones: ForceCones, wrench: Vector, x: Vector) -> tuple[Vecto
     return best, least
 
 
-def inside(cones: ForceCones, x: Vector) -> Vector:
+def inside(cones: ForceCones, x: Weights) -> Weights:
     """The same x, with heads as given and no z longer than its head."""
     x = x.copy()
     for block, head in zip(cones.blocks(), cones.heads, strict=True):
@@ -54,7 +55,7 @@ def inside(cones: ForceCones, x: Vector) -> Vector:
     return x
 
 
-def metric(cones: ForceCones, x: Vector) -> np.ndarray:
+def metric(cones: ForceCones, x: Weights) -> np.ndarray:
     """Block by block the inverse Hessian of the cones' barriers, shape (s, s): how far x may go which way, squared."""
     room = np.zeros((len(x), len(x)))
     for block, head in zip(cones.blocks(), cones.heads, strict=True):
@@ -72,7 +73,7 @@ def metric(cones: ForceCones, x: Vector) -> np.ndarray:
     return room
 
 
-def surplus(cones: ForceCones, motion: Vector, wrench: Vector) -> float:
+def surplus(cones: ForceCones, motion: Weights, wrench: Weights) -> float:
     """wrench . q less what cones with given heads take back: positive for a q that proves that nothing balances."""
     products = cones.maps.T @ motion
     taken = 0.0
@@ -83,7 +84,7 @@ def surplus(cones: ForceCones, motion: Vector, wrench: Vector) -> float:
     return float(wrench @ motion) + taken
 
 
-def resistance(cones: ForceCones, motion: Vector) -> float:
+def resistance(cones: ForceCones, motion: Weights) -> float:
     """The most that a unit force of a cone with a free head resists; <= 0 for a motion that proves anything."""
     products = cones.maps.T @ motion
     worst = -np.inf
@@ -93,7 +94,7 @@ def resistance(cones: ForceCones, motion: Vector) -> float:
     return worst
 
 
-def repaired_motion(cones: ForceCones, motion: Vector, square: Vector | None = None) -> Vector | None:
+def repaired_motion(cones: ForceCones, motion: Weights, square: Weights | None = None) -> Weights | None:
     """A motion next to the one given that no cone with a free head resists, at length one; None if there is none.
 
     Cones that it nearly touches are made to touch it: with products on a cone's surface by Newton steps, with products
@@ -111,7 +112,9 @@ def repaired_motion(cones: ForceCones, motion: Vector, square: Vector | None = N
             rows, misses = _touching(cones, found, near)
             if square is not None:
                 rows, misses = np.vstack([rows, square]), np.append(misses, -(square @ found))
-            found = found + np.linalg.pinv(rows, rcond=WITNESS) @ misses if len(rows) else found
+            if not np.abs(misses).max(initial=0.0) > np.finfo(np.float64).eps:
+                break
+            found = found + np.linalg.pinv(rows, rcond=WITNESS) @ misses
             length = float(np.linalg.norm(found))
             if length < 0.5:
                 break
@@ -121,7 +124,7 @@ def repaired_motion(cones: ForceCones, motion: Vector, square: Vector | None = N
     return None
 
 
-def _touching(cones: ForceCones, motion: Vector, near: float) -> tuple[Rows, Vector]:
+def _touching(cones: ForceCones, motion: Weights, near: float) -> tuple[np.ndarray, Weights]:
     """Rows and what they miss, for the cones whose surface the products of a motion are near to, or outside of."""
     rows: list[np.ndarray] = [np.zeros((0, len(motion)))]
     misses: list[np.ndarray] = [np.zeros(0)]

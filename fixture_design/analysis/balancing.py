@@ -16,9 +16,9 @@ import numpy as np
 
 from fixture_design.analysis.balances import metric, repaired_forces, repaired_motion
 from fixture_design.analysis.contact_forces import Choice, ContactForces, contact_forces, force_branches
-from fixture_design.analysis.loads import nearest_forces, squeezed_cones
+from fixture_design.analysis.loads import largest_factors, nearest_forces, squeezed_cones
 from fixture_design.analysis.normal_errors import blur
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Vector, Weights
 from fixture_design.contacts import Contact, motion_about_origin, scale_of, unit_normal, velocity
 from fixture_design.layout import Balance, Unbalanced, element_name
 from fixture_design.tolerances import MOST_FORCE_BRANCHES, WITNESS, ZERO_ROW, Tolerances
@@ -130,7 +130,19 @@ def _settle(
     outer = branch.outer.in_units_of(unit)
     motion = nearest.dual if branch.alike else nearest_forces(outer.cones, target).dual
     against = unbalanced(branch, outer, motion, wrench, tolerances)
+    if against is None:
+        sharper = _sharpened(outer, outer.applied(wrench) + outer.given, motion)
+        against = None if sharper is None else unbalanced(branch, outer, sharper, wrench, tolerances)
     return against, None if against else _open(branch)
+
+
+def _sharpened(outer: ContactForces, target: Weights, motion: Weights) -> Weights | None:
+    """A motion that says how much of what is left is needed: where that is little, its direction is not well known."""
+    size = float(np.linalg.norm(motion))
+    if size <= WITNESS:
+        return None
+    found = largest_factors(outer.cones, target, (motion / size)[None])
+    return found.motions[0] if np.any(found.motions[0]) else None
 
 
 def _open(branch: ForceBranch) -> str:
@@ -141,7 +153,7 @@ def _open(branch: ForceBranch) -> str:
 
 
 def unbalanced(
-    branch: ForceBranch, outer: ContactForces, motion: Vector, wrench: Vector, tolerances: Tolerances
+    branch: ForceBranch, outer: ContactForces, motion: Weights, wrench: Vector, tolerances: Tolerances
 ) -> Unbalanced | None:
     """The motion as a proof that the wrench is not balanced, if it is one by more than a tie."""
     target = outer.applied(wrench) + outer.given
@@ -196,7 +208,7 @@ def most_resistance(contact: Contact, normal: int, motion: Vector) -> float:
     return along + contact.friction * slip + contact.provenance.normal_error * error
 
 
-def _absorbs(forces: ContactForces, x: Vector) -> bool:
+def _absorbs(forces: ContactForces, x: Weights) -> bool:
     """Whether balancing forces have room for whatever the errors of normals change about them.
 
     Forces N with friction mu move by at most 2 e N hypot(1, mu) each (and their moments by mu c e N); the correction

@@ -15,7 +15,7 @@ from itertools import islice, product
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Points, Rows, Vector, Weights
+from fixture_design.arrays import Indices, Points, Vector, Weights
 from fixture_design.contacts import Contact, Scale, cross, scale_of, tangents, unit_normal
 from fixture_design.layout import ContactForce, element_name
 from fixture_design.tolerances import MOST_FRICTION
@@ -68,7 +68,7 @@ class ContactForces:
     owners: tuple[tuple[int, int], ...]
     frictions: Weights
     cones: ForceCones
-    given: Vector
+    given: Weights
     scale: Scale
     unit: float = 1.0
 
@@ -78,12 +78,12 @@ class ContactForces:
         cones = replace(self.cones, heads=self.cones.heads * factor)
         return replace(self, cones=cones, given=self.given * factor, unit=unit)
 
-    def applied(self, wrench: Vector) -> Vector:
+    def applied(self, wrench: Vector) -> Weights:
         """A wrench about W's origin [N, N m] in the rows of the cones, without what is given."""
         scaled = wrench_scaled(wrench, self.scale) / self.unit
         return np.concatenate([scaled, np.zeros(len(self.given) - len(scaled))])
 
-    def forces(self, x: Vector) -> dict[str, ContactForce]:
+    def forces(self, x: Weights) -> dict[str, ContactForce]:
         """The forces on the part [N] of some x, shape (s,), for each contact; zero for normals that have no cone."""
         plane = len(self.scale.reference)
         found = {c.name: (np.zeros((len(c.normals), plane)), np.zeros(len(c.normals))) for c in self.contacts}
@@ -188,7 +188,7 @@ def _owners(contacts: Sequence[Contact], choice: Mapping[tuple[str, int], int]) 
     return owners
 
 
-def _columns(contact: Contact, normal: int, friction: float, scale: Scale) -> Rows:
+def _columns(contact: Contact, normal: int, friction: float, scale: Scale) -> np.ndarray:
     """Columns of one cone, shape (d, k)."""
     unit = unit_normal(contact.normals[normal])
     directions = np.vstack([-unit, friction * tangents_of(unit)]) if friction else -unit[None]

@@ -13,11 +13,10 @@ from typing import Literal
 import numpy as np
 
 from fixture_design.analysis.acting import LoadRow
-from fixture_design.analysis.balances import repaired_motion
 from fixture_design.analysis.balancing import ForceBranch, Settled, branches_of, settle
 from fixture_design.analysis.contact_forces import ContactForces
 from fixture_design.analysis.loads import largest_factors
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, LoadVerdict, element_name
 from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, ZERO_ROW, Tolerances
@@ -65,7 +64,7 @@ def _held(
     ranges = [factor_range(branch, constant, row.wrench) for branch in looked_at]
     best = max(ranges, key=lambda found: found.reserve)
     reserve = None if best.reserve[1] < 0 else (max(best.reserve[0], 0.0), best.reserve[1])
-    needed = max(0.0, best.needed[1]) if np.isfinite(best.needed[1]) else 0.0
+    needed = max(0.0, next(filter(np.isfinite, best.needed[::-1]), 0.0))
     answer, reason = _answer(settled, ranges)
     verdict = LoadVerdict(row.load, row.row, answer, reserve, needed, None, best.first, reason)
     return _with_proof(verdict, settled)
@@ -135,7 +134,7 @@ def _ends(
     found = largest_factors(forces.cones, fixed, np.array([along, -along]))
     brackets = [(_rounded(low), _rounded(high)) for low, high in zip(found.lower, found.upper, strict=True)]
     first: First = ()
-    if np.isfinite(brackets[0][1]):
+    if np.isfinite(brackets[0][1]) and np.any(found.motions[0]):
         first = giving_way(forces, found.forces[0], found.motions[0], found.forces[1])
     return brackets[0], brackets[1], first
 
@@ -145,18 +144,15 @@ def _rounded(factor: float) -> float:
     return 0.0 if abs(factor) <= WITNESS else float(factor)
 
 
-def giving_way(forces: ContactForces, x: Vector, motion: Vector, other: Vector) -> First:
+def giving_way(forces: ContactForces, x: Weights, motion: Weights, other: Weights) -> First:
     """Elements that slip or lift when the part starts to move along a motion, pushed as hard as x says.
 
     Of those that lift, the ones that carry in ``other``, the forces under another factor, if there are any: what never
     carries does not give way.
     """
-    unit = repaired_motion(forces.cones, motion)
-    if unit is None:
-        return ()
-    products = forces.cones.maps.T @ unit
-    largest = float(np.abs(x).max(initial=0.0))
-    least = CARRIES * max(largest, float(np.abs(other).max(initial=0.0)))
+    products = forces.cones.maps.T @ (motion / np.linalg.norm(motion))
+    # in units of which what acts is one at most
+    least = CARRIES * max(1.0, float(np.abs(x).max(initial=0.0)), float(np.abs(other).max(initial=0.0)))
     found: dict[str, Literal["slips", "lifts"]] = {}
     carried: set[str] = set()
     cones = zip(forces.owners, forces.frictions, forces.cones.heads, forces.cones.blocks(), strict=True)
@@ -165,9 +161,9 @@ def giving_way(forces: ContactForces, x: Vector, motion: Vector, other: Vector) 
         # columns of friction are as long as the friction is large
         across = float(np.linalg.norm(products[block][1:])) / friction if friction else 0.0
         name = element_name(forces.contacts[index].name)
-        if push > CARRIES * largest and across > CARRIES:
+        if push > least and across > CARRIES:
             found[name] = "slips"
-        elif push <= CARRIES * largest and np.isnan(head) and leaving > CARRIES:
+        elif push <= least and np.isnan(head) and leaving > CARRIES:
             found.setdefault(name, "lifts")
             carried |= {name} if other[block.start] > least else set()
     return tuple(pair for pair in found.items() if pair[1] == "slips" or not carried or pair[0] in carried)

@@ -17,8 +17,8 @@ import numpy as np
 
 from fixture_design.analysis.balances import repaired_forces, repaired_motion, surplus
 from fixture_design.analysis.contact_forces import ForceCones
-from fixture_design.arrays import Rows, Vector, Weights
-from fixture_design.tolerances import CARRIES, WITNESS
+from fixture_design.arrays import Weights
+from fixture_design.tolerances import CARRIES, SOLVED, WITNESS
 
 #: What Clarabel is asked for [-]; it stops sooner where it gets no further.
 _SOLVER_TOLERANCE = 1e-12
@@ -39,21 +39,21 @@ class Factors:
 
     lower: Weights
     upper: Weights
-    forces: Rows
-    motions: Rows
+    forces: np.ndarray
+    motions: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class Solved:
     """x of the cones, y of the free variables, and the equations' multipliers; ``found`` if the solver says so."""
 
-    x: Vector
-    y: Vector
-    dual: Vector
+    x: Weights
+    y: Weights
+    dual: Weights
     found: bool
 
 
-def solve_cones(cones: ForceCones, columns: Rows, sides: Vector, cost: Vector) -> Solved:
+def solve_cones(cones: ForceCones, columns: np.ndarray, sides: Weights, cost: Weights) -> Solved:
     """min cost . [x; y]  with  sides + maps @ x + columns @ y = 0,  x in the cones, y free."""
     solvers, solver, options = _solver()
     program = solvers.MathematicalProgram()
@@ -85,7 +85,7 @@ def _solver() -> tuple[Any, Any, Any]:
     return solvers, solver, options
 
 
-def nearest_forces(cones: ForceCones, wrench: Vector, columns: Rows | None = None) -> Solved:
+def nearest_forces(cones: ForceCones, wrench: Weights, columns: np.ndarray | None = None) -> Solved:
     """x (and y) that leave least of ``wrench``: min |wrench + maps @ x + columns @ y|.
 
     What is left, q, is a motion that none of the cones with free heads resists, if it is not zero: ``dual``.
@@ -102,7 +102,7 @@ def nearest_forces(cones: ForceCones, wrench: Vector, columns: Rows | None = Non
     return Solved(found.x[:count], found.y, -found.x[count + 1 :], found.found)
 
 
-def largest_factors(cones: ForceCones, fixed: Vector, loads: Rows) -> Factors:
+def largest_factors(cones: ForceCones, fixed: Weights, loads: np.ndarray) -> Factors:
     """For each load the largest factor a with  fixed + a load + maps @ x = 0  for some x in the cones.
 
     Args:
@@ -119,21 +119,22 @@ def largest_factors(cones: ForceCones, fixed: Vector, loads: Rows) -> Factors:
     )
 
 
-def _largest_factor(cones: ForceCones, fixed: Vector, load: Vector) -> tuple[float, float, Vector, Vector]:
+def _largest_factor(cones: ForceCones, fixed: Weights, load: Weights) -> tuple[float, float, Weights, Weights]:
     cost = np.zeros(cones.maps.shape[1] + 1)
     cost[-1] = -1.0
     solved = solve_cones(cones, load[:, None], fixed, cost)
     motion = _bounding(cones, -solved.dual, load)
     upper = np.inf if motion is None else -surplus(cones, motion, fixed)
     x, left = repaired_forces(cones, fixed + solved.y[0] * load, solved.x)
-    if motion is not None and solved.found and left <= WITNESS:
+    # where friction is at its limit nothing has room, and the forces stay as they were found
+    if motion is not None and solved.found and left <= SOLVED:
         return min(float(solved.y[0]), upper), upper, x, motion
     return _unusual(cones, fixed, load, upper, motion)
 
 
 def _unusual(
-    cones: ForceCones, fixed: Vector, load: Vector, upper: float, motion: Vector | None
-) -> tuple[float, float, Vector, Vector]:
+    cones: ForceCones, fixed: Weights, load: Weights, upper: float, motion: Weights | None
+) -> tuple[float, float, Weights, Weights]:
     """No factor at all, or no limit, or the solver did not get there."""
     some = nearest_forces(cones, fixed, load[:, None])
     none = np.zeros(len(fixed)) if motion is None else motion
@@ -148,14 +149,14 @@ def _unusual(
     return float(some.y[0]), upper, x, none
 
 
-def _recedes(cones: ForceCones, load: Vector) -> bool:
+def _recedes(cones: ForceCones, load: Weights) -> bool:
     """Whether the cones with free heads alone balance the load, however large it is."""
     size = float(np.linalg.norm(load))
     passive = cones.passive
     return repaired_forces(passive, load / size, nearest_forces(passive, load / size).x)[1] <= WITNESS
 
 
-def _bounding(cones: ForceCones, motion: Vector, load: Vector) -> Vector | None:
+def _bounding(cones: ForceCones, motion: Weights, load: Weights) -> Weights | None:
     """The motion, repaired and with load . q = 1; None if it does not move along the load."""
     repaired = repaired_motion(cones, motion)
     if repaired is None or repaired @ load <= WITNESS * float(np.linalg.norm(load)):

@@ -12,13 +12,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fixture_design.analysis.acting import LoadRow
-from fixture_design.analysis.balancing import ForceBranch, branches_of
+from fixture_design.analysis.balancing import ForceBranch, branches_of, settle
 from fixture_design.analysis.contact_forces import ContactForces, ForceCones, contact_forces
 from fixture_design.analysis.holding import held_loads
 from fixture_design.analysis.loads import solve_cones
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Vector, Weights
 from fixture_design.contacts import Contact
-from fixture_design.layout import Answer, LoadVerdict, element_name
+from fixture_design.layout import Answer, element_name
 from fixture_design.tolerances import LOAD_TIE, Tolerances
 
 #: How much further than they go the loads are taken, one after the other until the preloads found are verified [-].
@@ -61,26 +61,38 @@ def _with_cuts(
     margin: float,
     tolerances: Tolerances,
 ) -> dict[str, float] | None:
-    """Preloads that are verified to hold all rows; the rows that they do not hold join the program."""
-    start = int(np.argmax([np.linalg.norm(row.wrench) for row in rows]))
-    used = [start]
+    """Preloads that are verified to hold all rows; the row that they hold worst joins the program."""
+    used = [int(np.argmax([np.linalg.norm(row.wrench) for row in rows]))]
     while len(used) <= _MOST_ROWS:
         least = _program(contacts, preloads, limits, constant, [rows[i] for i in used], margin, tolerances)
         if least is None:
             return None
-        verdicts = held_loads(contacts, {**preloads, **least}, constant, rows, tolerances)
-        failing = [i for i, verdict in enumerate(verdicts) if verdict.answer is not Answer.YES]
-        if not failing:
-            return least
-        new = [i for i in failing if i not in used]
-        if not new:
+        pushing = {**preloads, **least}
+        worst = _worst(contacts, pushing, constant, rows, tolerances)
+        if worst is None:
+            verdicts = held_loads(contacts, pushing, constant, rows, tolerances)
+            return least if all(verdict.answer is Answer.YES for verdict in verdicts) else None
+        if worst in used:
             return None
-        used.append(min(new, key=lambda i: _reserve(verdicts[i])))
+        used.append(worst)
     return None
 
 
-def _reserve(verdict: LoadVerdict) -> float:
-    return -1.0 if verdict.reserve is None else verdict.reserve[0]
+def _worst(
+    contacts: Sequence[Contact],
+    preloads: Mapping[str, float],
+    constant: Vector,
+    rows: Sequence[LoadRow],
+    tolerances: Tolerances,
+) -> int | None:
+    """The row that is furthest from a balance; None if all have one."""
+    branches, complete = branches_of(contacts, preloads, tolerances)
+    failing: dict[int, float] = {}
+    for index, row in enumerate(rows):
+        settled = settle(branches, complete, constant + row.wrench, tolerances)
+        if settled.balance is None:
+            failing[index] = max((motion.surplus for motion in settled.against), default=0.0)
+    return max(failing, key=lambda index: failing[index]) if failing else None
 
 
 def _program(
@@ -121,8 +133,8 @@ def _with_free_preloads(contacts: Sequence[Contact], fixed: Mapping[str, float],
 
 
 def _joined(
-    forces: ContactForces, targets: Sequence[Vector], pushing: np.ndarray
-) -> tuple[ForceCones, np.ndarray, Vector]:
+    forces: ContactForces, targets: Sequence[Weights], pushing: np.ndarray
+) -> tuple[ForceCones, np.ndarray, Weights]:
     """The balances of all targets side by side, each with rows  sum N - preload = 0  of its own."""
     heads = np.zeros((len(pushing), forces.cones.maps.shape[1]))
     heads[:, forces.cones.starts] = pushing
@@ -137,8 +149,8 @@ def _joined(
 
 
 def _bounded(
-    cones: ForceCones, columns: np.ndarray, sides: Vector, low: Vector, high: Vector
-) -> tuple[ForceCones, np.ndarray, Vector]:
+    cones: ForceCones, columns: np.ndarray, sides: Weights, low: Weights, high: Weights
+) -> tuple[ForceCones, np.ndarray, Weights]:
     """low <= y <= high, with slacks as cones of size 1."""
     count, height = len(low), len(cones.maps)
     one, width = np.eye(count), cones.maps.shape[1]

@@ -15,7 +15,7 @@ import numpy as np
 from fixture_design.analysis.balancing import ForceBranch, Settled, branches_of, gained, most_resistance, settle
 from fixture_design.analysis.contact_forces import ContactForces, ForceCones
 from fixture_design.analysis.loads import largest_factors
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Vector, Weights
 from fixture_design.contacts import Contact, motion_about_origin, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Finding, Seating, SeatingStep, Unbalanced, element_name
 from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, Tolerances
@@ -160,7 +160,7 @@ def _pressing_in(branch: ForceBranch, name: str, weight: Vector) -> tuple[float,
     return (0.0 if proof is None else proof.surplus), float(found.upper[1]) * forces.unit, proof
 
 
-def _proof(branch: ForceBranch, forces: ContactForces, motion: Vector, name: str, weight: Vector) -> Unbalanced | None:
+def _proof(branch: ForceBranch, forces: ContactForces, motion: Weights, name: str, weight: Vector) -> Unbalanced | None:
     """The motion as a proof of the least force, scaled so that the locator resists it by at most 1 a newton."""
     motion = motion[: forces.contacts[0].dimension]
     if not np.any(motion):

@@ -9,7 +9,14 @@ from typing import Annotated, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from fixture_design.tolerances import MOST_FRICTION
+from fixture_design.tolerances import (
+    FARTHEST,
+    MOST_FORCE,
+    MOST_FRICTION,
+    MOST_GRAVITY,
+    MOST_MASS,
+    MOST_STIFFNESS,
+)
 
 
 class Record(BaseModel):
@@ -30,10 +37,22 @@ def exactly_one(*keys: str) -> ConfigDict:
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
 NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
+#: Numbers that sums and products are made of: not so large that these overflow, or that nobody can mean them.
+Newtons = Annotated[float, Field(allow_inf_nan=False, ge=-MOST_FORCE, le=MOST_FORCE)]
+Push = Annotated[float, Field(allow_inf_nan=False, ge=0, le=MOST_FORCE)]
+Mass = Annotated[float, Field(allow_inf_nan=False, gt=0, le=MOST_MASS)]
+Acceleration = Annotated[float, Field(allow_inf_nan=False, ge=-MOST_GRAVITY, le=MOST_GRAVITY)]
+Stiffness = Annotated[float, Field(allow_inf_nan=False, gt=0, le=MOST_STIFFNESS)]
+Length = Annotated[float, Field(allow_inf_nan=False, ge=-FARTHEST, le=FARTHEST)]
+Deviation = Annotated[float, Field(allow_inf_nan=False, ge=0, le=FARTHEST)]
 Friction = Annotated[float, Field(allow_inf_nan=False, ge=0, le=MOST_FRICTION)]
 
 #: [x, y] or [x, y, z]; which of them, `layout_rules` checks.
 Coordinates = Annotated[tuple[Number, ...], Field(strict=False, min_length=2, max_length=3)]
+#: Likewise of a force, an acceleration, and of a place.
+Force = Annotated[tuple[Newtons, ...], Field(strict=False, min_length=2, max_length=3)]
+Gravity = Annotated[tuple[Acceleration, ...], Field(strict=False, min_length=2, max_length=3)]
+Place = Annotated[tuple[Length, ...], Field(strict=False, min_length=2, max_length=3)]
 #: Exactly three numbers.
 Triple = Annotated[tuple[Number, ...], Field(strict=False, min_length=3, max_length=3)]
 #: Exactly two numbers.
@@ -57,7 +76,7 @@ def _number_as_list(value: object) -> object:
 
 #: A moment: three numbers in space; in the plane one number, with or without brackets.
 Moment = Annotated[
-    tuple[Number, ...],
+    tuple[Newtons, ...],
     Field(strict=False, min_length=1, max_length=3),
     BeforeValidator(_number_as_list),
     WithJsonSchema({"anyOf": [{"type": "number"}, _NUMBERS]}),

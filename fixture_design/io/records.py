@@ -13,15 +13,22 @@ from pydantic import BeforeValidator, Field
 from fixture_design.contacts import Role
 from fixture_design.io.record_types import (
     Coordinates,
+    Deviation,
+    Force,
     Friction,
+    Gravity,
+    Mass,
     Moment,
     Name,
     NotNegative,
     Number,
     Pair,
+    Place,
     Positive,
+    Push,
     Record,
     Size,
+    Stiffness,
     Text,
     Triple,
     exactly_one,
@@ -56,9 +63,9 @@ class PartRecord(Record):
     )
     scale: Positive | None = Field(None, description="factor that makes the vertices metres; mesh and step only")
     pose: PoseRecord | None = Field(None, description="X_WP, default identity")
-    mass: Positive | None = Field(None, description="[kg]")
-    center: Coordinates | None = Field(None, description="centre of mass in P [length]")
-    form_error: NotNegative | None = Field(None, description="largest deviation of the surface [length]")
+    mass: Mass | None = Field(None, description="[kg]")
+    center: Place | None = Field(None, description="centre of mass in P [length]")
+    form_error: Deviation | None = Field(None, description="largest deviation of the surface [length]")
     faceted: bool = Field(
         False, description="every facet is meant as it is; none stands for a piece of a round surface"
     )
@@ -110,14 +117,14 @@ class ElementRecord(Record):
     at: Coordinates = Field(description="in W [length]")
     tip: TipField = Field(None, description="default: point", json_schema_extra=_or_point)
     axis: Coordinates | None = Field(None, description="of a pin: its direction")
-    tolerance: NotNegative | None = Field(None, description="of its position along the normal [length]")
+    tolerance: Deviation | None = Field(None, description="of its position along the normal [length]")
     friction: Friction | None = Field(None, description="coefficient, default: the layout's")
-    preload: NotNegative | None = Field(None, description="what a clamp pushes with, along the inward normal [N]")
-    limits: Annotated[tuple[NotNegative, ...], Field(strict=False, min_length=2, max_length=2)] | None = Field(
+    preload: Push | None = Field(None, description="what a clamp pushes with, along the inward normal [N]")
+    limits: Annotated[tuple[Push, ...], Field(strict=False, min_length=2, max_length=2)] | None = Field(
         None, description="smallest and largest preload that design may choose [N]"
     )
     fixed: bool = Field(False, description="design leaves it where it is")
-    stiffness: Positive | None = Field(None, description="of the contact [N/m], whatever the units")
+    stiffness: Stiffness | None = Field(None, description="of the contact [N/m], whatever the units")
 
 
 class BodyRecord(Record):
@@ -171,8 +178,8 @@ class LoadRecord(Record):
 
     WANTED: ClassVar[str] = "a mapping such as {name: cutting, point: [0, 0, 0], force: [0, 300, -100]}"
     name: Name
-    point: Coordinates | None = Field(None, description="where the force acts, in W [length]")
-    force: Coordinates | None = Field(None, description="[N]")
+    point: Place | None = Field(None, description="where the force acts, in W [length]")
+    force: Force | None = Field(None, description="[N]")
     moment: Moment | None = Field(None, description="[N m]; planar: one number")
     path: Text | None = Field(None, description="CSV file of wrenches, instead of the three keys above")
 
@@ -217,7 +224,7 @@ class LayoutRecord(Record):
     space: Space = "spatial"
     units: Literal["m", "mm", "in"] = Field("m", description="of the lengths in this file")
     part: PartRecord | None = None
-    gravity: Coordinates | None = Field(None, description="[m/s^2], whatever the units; default none")
+    gravity: Gravity | None = Field(None, description="[m/s^2], whatever the units; default none")
     friction: Friction = Field(0.0, description="default coefficient")
     surface_gap: NotNegative | None = Field(
         None, description="largest distance between element and surface [length], default 1e-5 m"

@@ -31,9 +31,10 @@ def balance_fault(balance: Balance, contacts: Sequence[Contact], preloads: Mappi
     if set(balance.forces) - set(known):
         return f"it has forces at {', '.join(sorted(set(balance.forces) - set(known)))}, which may not push"
     scale = scale_of(contacts)
-    unit = _largest(balance, scale, preloads)
-    if not np.isfinite(unit):
+    arrays = [array for force in balance.forces.values() for array in (force.forces, force.moments)]
+    if not all(np.isfinite(array).all() for array in (balance.wrench, *arrays)):
         return "its forces are not finite"
+    unit = _largest(balance, scale, preloads)
     faults = (_force_fault(known[name], force, unit * limit_of(scale)) for name, force in balance.forces.items())
     if fault := next(filter(None, faults), None):
         return fault

@@ -29,7 +29,7 @@ COLUMNS: dict[Space, tuple[tuple[str, ...], tuple[str, ...]]] = {
 _PER_METRE = {"m": 1.0, "mm": 1000.0, "in": 1 / 0.0254}
 
 #: Rows of the longest path.
-MOST_ROWS = 100_000
+MOST_ROWS = 10_000
 
 
 def load_rows(layout: Layout, group: Group) -> list[LoadRow]:
