@@ -21,16 +21,17 @@ _NEAR_SURFACE = (1e-5, 1e-7, 1e-9)
 def repaired_forces(cones: ForceCones, wrench: Weights, x: Weights) -> tuple[Weights, float]:
     """x in the cones with  wrench + maps @ x = 0  as nearly as it can be, and what is left.
 
-    The step to the balance is the shortest in the metric of each cone's barrier, so that what has no room stays.
+    Where nothing acts, nothing pushes. The step to the balance is the shortest in the metric of each cone's barrier, so
+    that what has no room stays.
 
     Returns:
-        x, and |wrench + maps @ x| relative to the larger of |wrench| and the largest force.
+        x, and |wrench + maps @ x| relative to the largest of |wrench|, the largest force, and the unit.
     """
-    best, least = inside(cones, x), np.inf
+    best, least = inside(cones, x if np.any(wrench) else np.zeros_like(x)), np.inf
     x = best
     for _ in range(_STEPS):
         left = wrench + cones.maps @ x
-        size = max(float(np.linalg.norm(wrench)), float(np.abs(x).max(initial=0.0)), ZERO_ROW)
+        size = max(1.0, float(np.linalg.norm(wrench)), float(np.abs(x).max(initial=0.0)))
         relative = float(np.linalg.norm(left)) / size
         if relative >= least:
             break

@@ -9,6 +9,7 @@ Answers of the solver are suggestions: `balances` makes exact forces and motions
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -22,6 +23,9 @@ from fixture_design.tolerances import CARRIES, SOLVED, WITNESS
 
 #: What Clarabel is asked for [-]; it stops sooner where it gets no further.
 _SOLVER_TOLERANCE = 1e-12
+
+#: Numbers beyond this are a solver's that failed [-].
+_RUNAWAY = 1e50
 
 #: Largest N in a squeeze whose least is 1 [-].
 _SQUEEZE_CAP = 1e4
@@ -70,9 +74,14 @@ def solve_cones(cones: ForceCones, columns: np.ndarray, sides: Weights, cost: We
         else:
             program.AddLorentzConeConstraint(np.eye(len(part)), np.zeros(len(part)), part)
     result = solver.Solve(program, None, options)
-    values = np.nan_to_num(np.asarray(result.GetSolution(variables), dtype=np.float64), posinf=0.0, neginf=0.0)
-    dual = np.nan_to_num(np.asarray(result.GetDualSolution(balance), dtype=np.float64), posinf=0.0, neginf=0.0)
+    values, dual = _usable(result.GetSolution(variables)), _usable(result.GetDualSolution(balance))
     return Solved(values[:count], values[count:], dual, result.is_success())
+
+
+def _usable(values: Any) -> Weights:
+    """What the solver gives, zeros where it failed: rays of infeasible programs may grow beyond all bounds."""
+    array = np.asarray(values, dtype=np.float64)
+    return array if np.abs(array).max(initial=0.0) <= _RUNAWAY else np.zeros(len(array))
 
 
 @cache
@@ -80,6 +89,8 @@ def _solver() -> tuple[Any, Any, Any]:
     from pydrake import solvers  # noqa: PLC0415 - Drake only for those who ask about forces
 
     solver, options = solvers.ClarabelSolver(), solvers.SolverOptions()
+    # a program without a solution is an answer here, and nothing to report
+    logging.getLogger("drake").addFilter(lambda record: "Clarabel returns" not in record.getMessage())
     for name in ("tol_gap_abs", "tol_gap_rel", "tol_feas"):
         options.SetOption(solver.solver_id(), name, _SOLVER_TOLERANCE)
     return solvers, solver, options
@@ -114,8 +125,8 @@ def largest_factors(cones: ForceCones, fixed: Weights, loads: np.ndarray) -> Fac
     return Factors(
         np.array(lower, dtype=np.float64),
         np.array(upper, dtype=np.float64),
-        np.array(forces, dtype=np.float64).reshape(-1, width),
-        np.array(motions, dtype=np.float64).reshape(-1, d),
+        np.array(forces, dtype=np.float64).reshape(len(loads), width),
+        np.array(motions, dtype=np.float64).reshape(len(loads), d),
     )
 
 
@@ -146,6 +157,13 @@ def _unusual(
         return -np.inf, upper, x, none
     if _recedes(cones, load):
         return np.inf, np.inf, x, np.zeros(len(fixed))
+    if np.isfinite(upper) and upper > some.y[0]:
+        # the solver has least digits where everything gives way at once; what it did not find may still be there
+        for factor in (upper, 0.0) if some.y[0] < 0 < upper else (upper,):
+            there = nearest_forces(cones, fixed + factor * load).x
+            there, left = repaired_forces(cones, fixed + factor * load, there)
+            if left <= SOLVED:
+                return factor, upper, there, none
     return float(some.y[0]), upper, x, none
 
 
