@@ -1,8 +1,10 @@
 """Seating: whether gravity and the clamps, closed one after the other, press the part against every locator.
 
 First gravity acts alone, then each clamp closes in the order of the file, with those before it. At every step there
-must be a balance, or the part leaves the locators that the motion of the proof leaves; at the end every locator must be
-pressed: its normal force is more than zero in all balances. Supports come up later and have no part in it.
+must be a balance, or the part leaves the locators that the motion of the proof leaves. A locator is pressed at a step if
+its normal force is more than zero in all balances there are. It counts as pressed from then on, as long as some balance
+has it pressed: a clamp that closes later adds friction that could take its force over, but nothing that makes it do so.
+Supports come up later and have no part in it.
 """
 
 from __future__ import annotations
@@ -65,11 +67,13 @@ def _summed_up(steps: Sequence[SeatingStep]) -> tuple[Answer, str | None]:
         return Answer.NO, None
     if unproven := next((step for step in steps if step.proof is None), None):
         return Answer.UNDECIDED, f"{_when(unproven)}: {unproven.cause}"
-    if last.answer is Answer.YES:
+    pressed = {name for step in steps for name in step.presses}
+    if not last.idle and pressed >= set(last.reactions):
         return Answer.YES, None
     if last.idle:
         return Answer.UNDECIDED, f"nothing presses the part against {', '.join(last.idle)}"
-    return Answer.UNDECIDED, f"{_when(last)}: {last.cause}"
+    never = [name for name in last.reactions if name not in pressed]
+    return Answer.UNDECIDED, f"friction leaves open whether the part is pressed against {', '.join(never)}"
 
 
 def _when(step: SeatingStep) -> str:

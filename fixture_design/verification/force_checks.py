@@ -95,9 +95,11 @@ def seated_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
     last = use.steps[-1]
     if finding.answer is Answer.NO:
         return None if last.answer is Answer.NO else "the part is unseated at no step"
-    if len(use.steps) != len(order) or last.answer is not Answer.YES:
-        return "the part is not seated after the last step"
-    return None
+    if len(use.steps) != len(order):
+        return "there are steps missing"
+    pressed = {name for step in use.steps for name in step.presses}
+    never = [name for name in _locators(contacts) if name not in pressed or last.reactions[name][1] <= 0]
+    return f"nothing shows that {', '.join(never)} is pressed" if never or not pressed else None
 
 
 def _step_fault(
@@ -111,12 +113,15 @@ def _step_fault(
     if answer is Answer.YES and (fault := _proof_fault(Answer.YES, step.proof, (), acting, preloads)):
         return fault
     if step.answer is Answer.YES:
-        locators = dict.fromkeys(element_name(c.name) for c in acting if c.role == "locator")
-        missing = [name for name in locators if name not in step.presses]
-        if missing or not locators:
+        missing = [name for name in _locators(acting) if name not in step.presses]
+        if missing or not step.presses:
             return f"nothing shows that {', '.join(missing) or 'a locator'} is pressed"
     faults = (_pressed_fault(name, motions, step, acting, preloads) for name, motions in step.presses.items())
     return next(filter(None, faults), None)
+
+
+def _locators(contacts: Sequence[Contact]) -> list[str]:
+    return list(dict.fromkeys(element_name(c.name) for c in contacts if c.role == "locator"))
 
 
 def _pressed_fault(

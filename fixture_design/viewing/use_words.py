@@ -120,7 +120,7 @@ def _first(load: LoadVerdict) -> str:
 
 
 def _seating(evidence: Seating) -> str:
-    causes = [step.cause for step in evidence.steps if step.cause]
+    causes = [step.cause for step in evidence.steps if step.cause and step.answer is Answer.NO]
     if causes:
         return "; ".join(causes)
     last = evidence.steps[-1]

@@ -58,9 +58,9 @@ def sound(plate: Plate, rng: np.random.Generator) -> Data:
         for k, at in enumerate([*rests, *sides], start=1)
     ]
     clamps = [
-        {"name": "K1", "role": "clamp", "at": [0.5 * x, 0.35 * y, z], "preload": 900.0},
         {"name": "K2", "role": "clamp", "at": [0.5 * x, y, mid], "preload": 500.0},
         {"name": "K3", "role": "clamp", "at": [x, 0.5 * y, mid], "preload": 400.0},
+        {"name": "K1", "role": "clamp", "at": [0.5 * x, 0.35 * y, z], "preload": 900.0},
     ]
     side = float(rng.uniform(60, 100))
     return {
@@ -165,8 +165,8 @@ def _weak_clamp(data: Data, plate: Plate) -> None:
 def _drill_tips(data: Data, plate: Plate) -> None:
     """A drill beside the rests' triangle, with a weak clamp."""
     x, y, z = plate.size
-    element(data, "L3")["at"] = [0.5 * x, 0.4 * y, 0]
-    element(data, "K1")["at"] = [0.5 * x, 0.25 * y, z]
+    element(data, "L3")["at"] = [0.5 * x, 0.6 * y, 0]
+    element(data, "K1")["at"] = [0.5 * x, 0.3 * y, z]
     element(data, "K1")["preload"] = 50.0
     element(data, "K2")["preload"] = 50.0
     element(data, "K3")["preload"] = 50.0
@@ -203,8 +203,10 @@ def _loose(data: Data, plate: Plate) -> None:
 
 
 def _rough_rest(data: Data, plate: Plate) -> None:
-    """A rest that is known to a tenth of a millimetre."""
+    """A rest that is known to a millimetre, under the bore."""
+    x, y, _ = plate.size
     element(data, "L2")["tolerance"] = 1e-3
+    data["key_features"] = [{"name": "bore", "point": [x, 0, 0], "direction": [0, 0, 1], "tolerance": 5e-5}]
 
 
 def _missing(data: Data, plate: Plate) -> None:
