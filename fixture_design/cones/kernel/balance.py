@@ -25,13 +25,15 @@ from fixture_design.errors import ConeError
 #: Steps at most; 8 to 15 are usual.
 _STEPS = 60
 #: Gap and residuals of a finished load, relative to its sizes [-].
-_DONE = 1e-11
+_DONE = 4e-9
 #: A ray is one when its residual is this small next to its objective [-].
 _RAY = 1e-11
 #: The central path is followed no further than this [-].
 _CENTRE_END = 1e-20
+#: Steps at the end that keep tau and the gap and take the residuals to rounding.
+_POLISHING = 2
 #: Part of the way to the boundary that a step goes [-].
-_BACKED_OFF = 0.995
+_BACKED_OFF = 0.95
 #: Pivots of the Cholesky factor below this, next to the largest, are rounding [-].
 _PIVOT = 1e-30
 
@@ -99,12 +101,12 @@ def _numpy_guesses(maps: np.ndarray, balls: np.ndarray, fixed: np.ndarray, loads
             if not running.any():
                 break
             after = problem.step(state)
-            running &= after.is_finite() & (after.centre(balls) < state.centre(balls) * (1 + _DONE))
+            running &= after.is_inside() & (after.centre(balls) < state.centre(balls) * (1 + _DONE))
             state = after.where(running, state)
             steps += running
-        forces = problem.polished(state)
+        state = problem.polished(state)
     motions = state.tau[:, None] * loads - np.einsum("brm,bm->br", problem.basis, state.y)
-    return Guesses(forces, motions, state.tau, steps)
+    return Guesses(state.x, motions, state.tau, steps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,9 +122,10 @@ class _State:
     def centre(self, balls: np.ndarray) -> np.ndarray:
         return (_dots(self.x, self.s).sum(axis=1) + self.tau * self.kappa) / (len(balls) + 1)
 
-    def is_finite(self) -> np.ndarray:
+    def is_inside(self) -> np.ndarray:
         sums = self.x.sum(axis=(1, 2)) + self.s.sum(axis=(1, 2)) + self.y.sum(axis=1) + self.tau + self.kappa
-        return np.isfinite(sums) & (self.tau > 0) & (self.kappa > 0)
+        inside = (_squares(self.x) > 0).all(axis=1) & (_squares(self.s) > 0).all(axis=1)
+        return np.isfinite(sums) & inside & (self.tau > 0) & (self.kappa > 0)
 
     def where(self, chosen: np.ndarray, other: _State) -> _State:
         pick = [np.where(chosen.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in zip(self, other, strict=True)]
@@ -196,39 +199,39 @@ class _Problem:
         system = _System.of(self, state, scaling)
         lam = scaling.times(state.s)
         mu = state.centre(self.balls)
-        dx, ds, _, dtau, dkappa = system.direction(-lam, -state.tau * state.kappa, np.ones(len(mu)))
-        far = _longest(lam, scaling.over(dx), scaling.times(ds), state, dtau, dkappa)
-        far = np.minimum(far, 1.0)
+        ahead = system.direction(-lam, -state.tau * state.kappa, np.ones(len(mu)))
+        far = np.minimum(_longest(lam, ahead, state), 1.0)
         sigma = (1 - far) ** 3
-        target = (sigma * mu)[:, None]
-        crossed = _product(scaling.over(dx), scaling.times(ds))
-        crossed[:, :, 0] -= target
+        crossed = _product(ahead.x, ahead.s)
+        crossed[:, :, 0] -= (sigma * mu)[:, None]
         goal = -lam - _divided(lam, crossed)
-        dx, ds, dy, dtau, dkappa = system.direction(
-            goal, sigma * mu - state.tau * state.kappa - dtau * dkappa, 1 - sigma
-        )
-        far = _longest(lam, scaling.over(dx), scaling.times(ds), state, dtau, dkappa)
-        far = np.minimum(_BACKED_OFF * far, 1.0)
+        goal_tau = sigma * mu - state.tau * state.kappa - ahead.tau * ahead.kappa
+        move = system.refined(system.direction(goal, goal_tau, 1 - sigma), 1 - sigma)
+        far = np.minimum(_BACKED_OFF * _longest(lam, move, state), 1.0)
         alpha = far[:, None, None]
-        return _State(
-            state.x + alpha * dx,
-            state.s + alpha * ds,
-            state.y + far[:, None] * dy,
-            state.tau + far * dtau,
-            state.kappa + far * dkappa,
-        )
+        x = state.x + alpha * scaling.times(move.x)
+        tau = state.tau + far * move.tau
+        x[:, self.balls, 0] = tau[:, None]
+        s = state.s + alpha * move.slack
+        return _State(x, s, state.y + far[:, None] * move.y, tau, state.kappa + far * move.kappa)
 
-    def polished(self, state: _State) -> np.ndarray:
-        """x moved, least in the scaled norm, to where A x = b tau."""
-        x = state.x.copy()
-        x[:, self.balls, 0] = state.tau[:, None]
-        system = _System.of(self, state, _Scaling.of(state.x, state.s))
-        for _ in range(2):
-            missing = self.b * state.tau[:, None] - np.einsum("bmnw,bnw->bm", self.a, x)
-            push = np.einsum("bmnw,bm->bnw", self.a, _solve(system.factor, missing))
-            moved = x + system.spread(push)
-            x = np.where(np.isfinite(moved), moved, x)
-        return x
+    def polished(self, state: _State) -> _State:
+        """Steps back to the middle that leave tau alone and take A x = b tau, A^T y + s = c tau all the way."""
+        for _ in range(_POLISHING):
+            scaling = _Scaling.of(state.x, state.s)
+            system = _System.of(self, state, scaling)
+            lam = scaling.times(state.s)
+            middle = np.zeros(lam.shape)
+            middle[..., 0] = (_dots(lam, lam).sum(axis=1) / len(self.balls))[:, None]
+            move = system.refined(system.held(_divided(lam, middle) - lam), np.ones(len(lam)))
+            far = np.minimum(_BACKED_OFF * _longest(lam, move, state), 1.0)
+            far = np.where(far > _BACKED_OFF / 2, far, 0.0)
+            x = state.x + far[:, None, None] * scaling.times(move.x)
+            x[:, self.balls, 0] = state.tau[:, None]
+            s, y = state.s + far[:, None, None] * move.slack, state.y + far[:, None] * move.y
+            after = _State(x, s, y, state.tau, state.kappa)
+            state = after.where(after.is_inside(), state)
+        return state
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,94 +247,117 @@ class _Scaling:
         x, s = x / size_x[..., None], s / size_s[..., None]
         w = x - s
         w[..., 0] = x[..., 0] + s[..., 0]
-        return _Scaling(np.sqrt(size_x / size_s), w / np.sqrt(2 * (1 + _dots(x, s)))[..., None])
+        w /= np.sqrt(2 * (1 + _dots(x, s)))[..., None]
+        w[..., 0] = np.sqrt(1 + _dots(w[..., 1:], w[..., 1:]))
+        return _Scaling(np.sqrt(size_x / size_s), w)
 
     def times(self, v: np.ndarray) -> np.ndarray:
-        return self.eta[..., None] * _reflected(self.w, v)
+        along = _dots(self.w[..., 1:], v[..., 1:])
+        result = v + self.w * (v[..., 0] + along / (1 + self.w[..., 0]))[..., None]
+        result[..., 0] = self.w[..., 0] * v[..., 0] + along
+        return self.eta[..., None] * result
 
-    def over(self, v: np.ndarray) -> np.ndarray:
-        mirrored = -self.w
-        mirrored[..., 0] = self.w[..., 0]
-        return _reflected(mirrored, v) / self.eta[..., None]
+
+@dataclass(frozen=True, eq=False)
+class _Move:
+    """A direction: W^-1 dx, W ds, ds itself, dy, dtau, dkappa."""
+
+    x: np.ndarray
+    s: np.ndarray
+    slack: np.ndarray
+    y: np.ndarray
+    tau: np.ndarray
+    kappa: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class _System:
-    """The linear equations of one step, factored: H = A P A^T with P = W^2 a cone; a ball's t is eliminated first."""
+    """The linear equations of a step in scaled variables, where x and s look alike, factored.
+
+    A ball's dt = dtau is a plane in them: with a = W e_t it takes (I - a a^T / |a|^2) of everything, and adds a / |a|^2
+    for each dtau.
+
+    Attributes:
+        normals: a / |a|, shape (k, n, w); zero for cones.  lengths: |a|.
+        columns: A W (I - a a^T / |a|^2).  factor: of their squares.
+        cost: W c so projected.  per_tau: what dtau = 1 brings: W^-1 dx, dy.
+        missing: the residuals.
+    """
 
     problem: _Problem
     state: _State
     scaling: _Scaling
-    balls: np.ndarray
-    share: np.ndarray
+    normals: np.ndarray
+    lengths: np.ndarray
+    columns: np.ndarray
     factor: np.ndarray
-    per_tau: tuple[np.ndarray, np.ndarray, np.ndarray]
+    cost: np.ndarray
+    per_tau: tuple[np.ndarray, np.ndarray]
     missing: tuple[np.ndarray, np.ndarray, np.ndarray]
 
     @staticmethod
     def of(problem: _Problem, state: _State, scaling: _Scaling) -> _System:
-        w, balls = scaling.w, problem.balls
-        total = 2 * w[..., 0] ** 2 - 1
-        share = np.where(balls[:, None], 2 * w[..., :1] * w / total[..., None], 0.0)
-        share[..., 0] = 0.0
-        none = np.zeros((0,))
-        bare = _System(problem, state, scaling, balls, share, none, (none,) * 3, problem.residuals(state))
-        b, m = problem.b.shape
-        columns = problem.a.reshape(b * m, *w.shape[1:]) if m else problem.a.reshape(0, *w.shape[1:])
-        spread = bare._spread(columns.reshape(b, m, *w.shape[1:]))
-        normal = np.einsum("bmnw,bjnw->bmj", problem.a, spread)
-        factor = _cholesky(normal)
-        pulled = share - bare.spread(problem.c)
-        y1 = _solve(factor, problem.b - np.einsum("bmnw,bnw->bm", problem.a, pulled))
-        s1 = problem.c - np.einsum("bmnw,bm->bnw", problem.a, y1)
-        x1 = share - bare.spread(s1)
-        s1[:, balls, 0] = -(1 + bare._tilt(s1))[:, balls] / bare._corner[:, balls]
-        x1[:, balls, 0] = 1.0
-        return _System(problem, state, scaling, balls, share, factor, (x1, s1, y1), bare.missing)
+        lengths = np.linalg.norm(scaling.w, axis=-1)
+        normals = scaling.w / lengths[..., None] * problem.balls[:, None]
+        lengths = lengths * scaling.eta
+        wide = _Scaling(scaling.eta[:, None], scaling.w[:, None])
+        columns = wide.times(problem.a)
+        above = _dots(columns, normals[:, None]) / lengths[:, None]
+        columns = _across(normals[:, None], columns)
+        factor = _cholesky(np.einsum("bmnw,bjnw->bmj", columns, columns))
+        cost = scaling.times(problem.c)
+        level = _across(normals, cost)
+        right = problem.b - above.sum(axis=-1) + np.einsum("bmnw,bnw->bm", columns, level)
+        y = _solve(factor, right)
+        x = normals / lengths[..., None] - level + np.einsum("bmnw,bm->bnw", columns, y)
+        missing = problem.residuals(state)
+        return _System(problem, state, scaling, normals, lengths, columns, factor, cost, (x, y), missing)
 
-    @property
-    def _corner(self) -> np.ndarray:
-        return self.scaling.eta**2 * (2 * self.scaling.w[..., 0] ** 2 - 1)
-
-    def _tilt(self, v: np.ndarray) -> np.ndarray:
-        """P_tz . v_z."""
-        along = _dots(self.scaling.w[..., 1:], v[..., 1:])
-        return 2 * self.scaling.eta**2 * self.scaling.w[..., 0] * along
-
-    def spread(self, v: np.ndarray) -> np.ndarray:
-        return self._spread(v[:, None])[:, 0]
-
-    def _spread(self, v: np.ndarray) -> np.ndarray:
-        """P v for a cone; for a ball (P_zz - P_zt P_tz / P_tt) v_z."""
-        w, eta = self.scaling.w[:, None], self.scaling.eta[:, None, :, None]
-        mirrored = v.copy()
-        mirrored[..., 0] *= -1
-        cone = eta**2 * (2 * w * np.sum(w * v, axis=-1, keepdims=True) + mirrored)
-        along = np.sum(w[..., 1:] * v[..., 1:], axis=-1, keepdims=True)
-        ball = eta**2 * (v - 2 * w * along / (2 * w[..., :1] ** 2 - 1))
-        ball[..., 0] = 0.0
-        return np.where(self.balls[:, None], ball, cone)
-
-    def direction(self, goal: np.ndarray, goal_tau: np.ndarray, part: np.ndarray) -> tuple[np.ndarray, ...]:
-        """dx, ds, dy, dtau, dkappa with W^-1 dx + W ds = goal, and residuals reduced by ``part``."""
-        problem, state = self.problem, self.state
+    def direction(self, goal: np.ndarray, goal_tau: np.ndarray, part: np.ndarray) -> _Move:
+        """W^-1 dx + W ds = goal, kappa dtau + tau dkappa = goal_tau, and ``part`` of the residuals gone."""
+        problem, state, balls = self.problem, self.state, self.problem.balls
         primal, dual, gap = self.missing
-        primal, dual = primal * part[:, None], dual * part[:, None, None]
-        pushed = self.scaling.times(goal)
-        free = pushed - self.share * pushed[..., :1]
-        right = primal - np.einsum("bmnw,bnw->bm", problem.a, free - self.spread(dual))
-        y2 = _solve(self.factor, right)
-        s2 = dual - np.einsum("bmnw,bm->bnw", problem.a, y2)
-        x2 = free - self.spread(s2)
-        s2[:, self.balls, 0] = ((pushed[..., 0] - self._tilt(s2)) / self._corner)[:, self.balls]
-        x2[:, self.balls, 0] = 0.0
-        x1, s1, y1 = self.per_tau
-        slope = state.kappa / state.tau - _dots(x1, s1).sum(axis=1)
-        right = gap * part + np.einsum("bnw,bnw->b", problem.c, x2) - np.einsum("bm,bm->b", problem.b, y2)
-        dtau = (right + s2[:, self.balls, 0].sum(axis=1) + goal_tau / state.tau) / slope
-        each = dtau[:, None, None]
-        dkappa = (goal_tau - state.kappa * dtau) / state.tau
-        return x2 + each * x1, s2 + each * s1, y2 + dtau[:, None] * y1, dtau, dkappa
+        primal, dual, gap = primal * part[:, None], dual * part[:, None, None], gap * part
+        level = _across(self.normals, goal - self.scaling.times(dual))
+        y = _solve(self.factor, primal - np.einsum("bmnw,bnw->bm", self.columns, level))
+        x = level + np.einsum("bmnw,bm->bnw", self.columns, y)
+        x1, y1 = self.per_tau
+        slack = dual - np.einsum("bmnw,bm->bnw", problem.a, y)
+        tops = _dots(self.normals, goal - self.scaling.times(slack)) / self.lengths
+        right = gap + np.einsum("bnw,bnw->b", self.cost, x) - np.einsum("bm,bm->b", problem.b, y) + tops.sum(axis=1)
+        slope = state.kappa / state.tau + np.einsum("bnw,bnw->b", x1, x1)
+        tau = (right + goal_tau / state.tau) / slope
+        return self._move(x + tau[:, None, None] * x1, y + tau[:, None] * y1, goal, goal_tau, dual, tau)
+
+    def held(self, goal: np.ndarray) -> _Move:
+        """W^-1 dx + W ds = goal, all of the residuals of x and s gone, dtau = dkappa = 0."""
+        primal, dual, _ = self.missing
+        level = _across(self.normals, goal - self.scaling.times(dual))
+        y = _solve(self.factor, primal - np.einsum("bmnw,bnw->bm", self.columns, level))
+        x = level + np.einsum("bmnw,bm->bnw", self.columns, y)
+        return self._move(x, y, goal, np.zeros(len(y)), dual, np.zeros(len(y)))
+
+    def _move(self, x, y, goal, goal_tau, dual, tau) -> _Move:
+        slack = dual + tau[:, None, None] * self.problem.c - np.einsum("bmnw,bm->bnw", self.problem.a, y)
+        tops = _dots(self.normals, goal - self.scaling.times(slack)) / self.lengths - tau[:, None] / self.lengths**2
+        slack[:, self.problem.balls, 0] = tops[:, self.problem.balls]
+        kappa = (goal_tau - self.state.kappa * tau) / self.state.tau
+        return _Move(x, goal - x, slack, y, tau, kappa)
+
+    def refined(self, move: _Move, part: np.ndarray) -> _Move:
+        """The move with A dx = b dtau + part of the residual once more."""
+        above = _dots(self.scaling.times(move.x)[:, None], self.problem.a).sum(axis=-1)
+        missing = self.missing[0] * part[:, None] + self.problem.b * move.tau[:, None] - above
+        y = _solve(self.factor, missing)
+        x = move.x + np.einsum("bmnw,bm->bnw", self.columns, y)
+        slack = move.slack - np.einsum("bmnw,bm->bnw", self.problem.a, y)
+        slack[:, self.problem.balls, 0] = move.slack[:, self.problem.balls, 0]
+        return _Move(x, move.s + move.x - x, slack, move.y + y, move.tau, move.kappa)
+
+
+def _across(normals: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """What of v is orthogonal to the unit normals."""
+    return v - _dots(normals, v)[..., None] * normals
 
 
 def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -342,13 +368,6 @@ def _squares(x: np.ndarray) -> np.ndarray:
     """t^2 - |z|^2, without its cancellation."""
     z = np.sqrt(_dots(x[..., 1:], x[..., 1:]))
     return (x[..., 0] - z) * (x[..., 0] + z)
-
-
-def _reflected(w: np.ndarray, v: np.ndarray) -> np.ndarray:
-    along = _dots(w[..., 1:], v[..., 1:])
-    result = v + w * (v[..., 0] + along / (1 + w[..., 0]))[..., None]
-    result[..., 0] = w[..., 0] * v[..., 0] + along
-    return result
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -366,16 +385,16 @@ def _divided(a: np.ndarray, d: np.ndarray) -> np.ndarray:
     return result
 
 
-def _longest(lam, dx, ds, state: _State, dtau, dkappa) -> np.ndarray:
+def _longest(lam: np.ndarray, move: _Move, state: _State) -> np.ndarray:
     """The longest step that stays in the cones, seen from the scaled point lam of both x and s."""
     size = np.sqrt(_squares(lam))
     unit = lam / size[..., None]
     back = np.zeros(len(lam))
-    for d in (dx, ds):
+    for d in (move.x, move.s):
         first = unit[..., 0] * d[..., 0] - _dots(unit[..., 1:], d[..., 1:])
         rest = d[..., 1:] - ((d[..., 0] + first) / (unit[..., 0] + 1))[..., None] * unit[..., 1:]
         back = np.maximum(back, ((np.sqrt(_dots(rest, rest)) - first) / size).max(axis=1, initial=0.0))
-    back = np.maximum(back, np.maximum(-dtau / state.tau, -dkappa / state.kappa))
+    back = np.maximum(back, np.maximum(-move.tau / state.tau, -move.kappa / state.kappa))
     return 1 / np.maximum(back, 1e-300)
 
 
