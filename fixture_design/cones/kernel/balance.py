@@ -22,6 +22,8 @@ from fixture_design.cones.kernel.choice import compiled
 from fixture_design.cones.kernel.threads import thread_count
 from fixture_design.errors import ConeError
 
+#: The compiled kernel takes so many dimensions with cones of a width.
+_WIDEST_COMPILED = {2: 3, 3: 6, 4: 7}
 #: Steps at most; 8 to 15 are usual.
 _STEPS = 60
 #: Gap and residuals of a finished load, relative to its sizes [-].
@@ -82,7 +84,7 @@ def balance_guesses(
     if not (np.isfinite(maps).all() and np.isfinite(fixed).all() and np.isfinite(loads).all()):
         raise ConeError("maps, fixed and loads must be finite")
     native = compiled(r)
-    if native is not None:
+    if native is not None and r <= _WIDEST_COMPILED[width]:
         flat = np.ascontiguousarray(maps.transpose(1, 2, 0)).reshape(n * width, r)
         found = native.balance_guesses(flat, balls, fixed, loads, width, seek, thread_count(threads))
         forces, motions, sizes, steps = found
