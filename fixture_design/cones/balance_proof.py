@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask
-from fixture_design.cones.balance_space import RANK, BalanceSpace, margins_of
+from fixture_design.cones.balance_space import RANK, BalanceSpace, flat, margins_of
 from fixture_design.cones.second_order import Factors
 
 #: What is left of balanced wrenches, relative to the sum of their sizes [-]: rounding of a few hundred products.
@@ -22,6 +22,10 @@ OPPOSED = 1e-14
 STANDS_OUT = 1e-12
 #: Guesses that are this much larger than their tau are rays [-].
 _RAY = 1e9
+#: Pushes this small next to the largest may be left out [-].
+_NEXT_TO_NOTHING = 1e-9
+#: Rounds of moving pushes to balance and onto their cones.
+_NEARER = 3
 #: Room that repaired pushes and motions keep from the boundary, relative to their size [-].
 _ROOM = 4e-15
 
@@ -48,7 +52,8 @@ class _Proofs:
         self.starts = np.zeros(self.x.shape)
         self.motions = np.zeros(loads.shape)
         turned = np.einsum("rd,dnw->rnw", space.turn, space.maps[:, space.rest])
-        self.inverse = np.linalg.pinv(turned.reshape(len(turned), -1), rcond=RANK)
+        self.turned = flat(turned)
+        self.inverse = np.linalg.pinv(self.turned, rcond=RANK)
         # sizes of what pushes make: a cone's map is one long, a clamp's as long as it is
         self.reach = np.sqrt(np.einsum("dnw,dnw->n", space.maps, space.maps))
 
@@ -80,6 +85,8 @@ class _Proofs:
         fixed = space.fixed + factors[:, None] * self.loads[which]
         x, motions, sizes = self._held(fixed)
         self._reach(which, x / sizes[:, None, None])
+        lost = np.isneginf(self.lower[which])
+        self._reach(which[lost], np.zeros(x[lost].shape))
         motions -= np.einsum("kd,kd->k", self.loads[which], motions)[:, None] * only
         lost = np.isneginf(self.lower[which])
         self._nothing(which[lost], motions[lost])
@@ -114,8 +121,11 @@ class _Proofs:
         for motions in (found.motions[lost], again.motions):
             along = np.einsum("kr,kr->k", motions, unit[lost])[:, None]
             self._nothing(which[lost], (motions - along * unit[lost]) @ space.turn)
+        self._reach(which[lost], np.zeros(middle.shape))
         self._reach(which[lost], middle)
-        self._reach(which[lost], first[lost], middle)
+        both = finite[lost]
+        self._reach(which[lost[both]], first[lost[both]], middle[both])
+        self._reach(which[lost[both]], self._nearby(first[lost[both]], self.loads[which[lost[both]]], space.fixed))
         endless = lost[~finite[lost]]
         self._endless(which[endless], found.forces[endless], middle[~finite[lost]])
 
@@ -154,6 +164,7 @@ class _Proofs:
         ahead = self._factors_of(rest, loads, fixed=np.zeros(loads.shape[1]))
         rest = np.where(ahead[:, None, None] > 0, rest / ahead[:, None, None], 0.0)
         rest = self._moved(rest, loads, np.zeros(loads.shape[1]), 1.0)
+        rest = self._nearby(rest, loads, np.zeros(loads.shape[1]), 1.0)
         rest[:, space.balls[space.rest]] = 0.0
         x = self._all(rest, loads, clamped=False)
         good = self._balances(loads + np.einsum("dnw,knw->kd", space.maps, x), x, np.ones(len(which)))
@@ -172,9 +183,29 @@ class _Proofs:
             rest = rest - step.reshape(rest.shape)
         return rest
 
+    def _nearby(
+        self, rest: np.ndarray, loads: np.ndarray, fixed: np.ndarray, factor: float | None = None
+    ) -> np.ndarray:
+        """Pushes that balance where those that are next to nothing stay so: cones give as much as they push."""
+        space = self.space
+        if not rest.shape[1]:
+            return rest
+        for _ in range(_NEARER):
+            free = space.free[space.rest]
+            rest = rest.copy()
+            rest[rest[..., 0] < _NEXT_TO_NOTHING * rest[..., :1].max(axis=1)] = 0.0
+            rest[:, free] = _onto(rest[:, free])
+            weights = np.where(free, rest[..., 0], 1.0 if factor is None else 0.0)[..., None] * np.ones(rest.shape)
+            weights = np.where(np.isfinite(weights), weights, 0.0)
+            factors = self._factors_of(rest, loads, fixed) if factor is None else np.full(len(loads), factor)
+            left = (fixed + factors[:, None] * loads + self._wrenches(rest)) @ space.turn.T
+            inverses = np.linalg.pinv(self.turned * flat(weights)[:, None], rcond=RANK)
+            step = np.einsum("ksr,kr->ks", inverses, np.where(np.isfinite(left), left, 0.0))
+            rest = rest - weights * step.reshape(rest.shape)
+        return rest
+
     def _wrenches(self, rest: np.ndarray) -> np.ndarray:
-        flat = self.space.maps[:, self.space.rest].reshape(len(self.space.rows), -1)
-        return rest.reshape(len(rest), -1) @ flat.T
+        return flat(rest) @ flat(self.space.maps[:, self.space.rest]).T
 
     def _factors_of(self, rest: np.ndarray, loads: np.ndarray, fixed: np.ndarray | None = None) -> np.ndarray:
         """The factors that come nearest to balance, where cones under stress take up all they can."""
@@ -212,7 +243,7 @@ class _Proofs:
         x[:, space.free] = _onto(x[:, space.free])
         if space.stressed.any():
             left = wrenches + np.einsum("dnw,knw->kd", space.maps, x)
-            taken = -(left @ space.relief.T).reshape(len(x), -1, x.shape[2])
+            taken = -(left @ space.relief.T).reshape(len(x), int(space.stressed.sum()), x.shape[2])
             strict = margins_of(space.stress[space.stressed])
             short = (-margins_of(taken) / strict).max(axis=1) + _ROOM * np.abs(taken).max(axis=(1, 2))
             x[:, space.stressed] = taken + np.maximum(short, 0.0)[:, None, None] * space.stress[space.stressed]
@@ -230,8 +261,7 @@ class _Proofs:
     def _opposition(self, motions: np.ndarray) -> np.ndarray:
         """M^T q, shape (k, n, w)."""
         space = self.space
-        flat = space.maps.reshape(len(space.rows), -1)
-        return (motions @ flat).reshape(len(motions), *space.maps.shape[1:])
+        return (motions @ flat(space.maps)).reshape(len(motions), *space.maps.shape[1:])
 
     def _bound(self, which: Indices, motions: np.ndarray) -> None:
         """Lowers the upper bounds by motions, mixed with one that all free cones oppose."""

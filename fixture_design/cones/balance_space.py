@@ -82,9 +82,9 @@ class BalanceSpace:
         units = np.where(free, force / np.where(free, lengths, 1.0), np.where(balls, heads, 0.0))
         maps = maps * (units / force)[:, None]
         stressed, stress, escape = _stress(maps, free, threads)
-        kept = _complement(maps[:, stressed].reshape(d, -1))
+        kept = _complement(flat(maps[:, stressed]))
         turn, beyond = _turned(maps[:, ~stressed], kept)
-        relief = np.linalg.pinv(maps[:, stressed].reshape(d, -1), rcond=RANK)
+        relief = np.linalg.pinv(flat(maps[:, stressed]), rcond=RANK)
         if escape is not None:
             escape = kept @ (kept.T @ escape)
             margins = margins_of(np.einsum("dnw,d->nw", maps, escape))[free & ~stressed]
@@ -116,6 +116,11 @@ class BalanceSpace:
         loads[:, -1] = 1.0
         found = balance_guesses(maps, self.balls[self.rest], fixed, loads, threads=self.threads)
         return Guesses(found.forces[:, :, : self.maps.shape[2]], found.motions[:, :-1], found.sizes, found.steps)
+
+
+def flat(arrays: np.ndarray) -> np.ndarray:
+    """The last two axes as one."""
+    return arrays.reshape(*arrays.shape[:-2], arrays.shape[-2] * arrays.shape[-1])
 
 
 def margins_of(x: np.ndarray) -> np.ndarray:
@@ -171,14 +176,14 @@ def _balanced_stress(maps: np.ndarray, pushed: Mask, x: np.ndarray) -> tuple[np.
     stress = np.zeros(maps.shape[1:])
     if not pushed.any():
         return stress, True
-    columns = maps[:, pushed].reshape(len(maps), -1)
+    columns = flat(maps[:, pushed])
     inverse = np.linalg.pinv(columns, rcond=RANK)
-    flat = x.reshape(-1)
+    strain = x.reshape(-1)
     for _ in range(2):
-        flat = flat - inverse @ (columns @ flat)
-    if not np.abs(flat).max() > 0:
+        strain = strain - inverse @ (columns @ strain)
+    if not np.abs(strain).max() > 0:
         return stress, False
-    stress[pushed] = (flat / np.abs(flat).max()).reshape(x.shape)
+    stress[pushed] = (strain / np.abs(strain).max()).reshape(x.shape)
     return stress, bool(margins_of(stress[pushed]).min() > _STRICT)
 
 
@@ -192,7 +197,7 @@ def _complement(columns: np.ndarray) -> np.ndarray:
 
 def _turned(maps: np.ndarray, kept: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """T, which makes the unit columns of the kept part orthonormal rows, and C, which they do not reach."""
-    columns = kept.T @ maps.reshape(len(maps), -1)
+    columns = kept.T @ flat(maps)
     lengths = np.linalg.norm(columns, axis=0)
     if not columns.shape[0] or not (lengths > 0).any():
         return np.zeros((0, len(maps))), kept
