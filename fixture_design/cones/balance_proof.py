@@ -12,7 +12,7 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Mask
 from fixture_design.cones.balance_space import RANK, BalanceSpace, flat, margins_of
-from fixture_design.cones.second_order import Factors
+from fixture_design.cones.force_cones import Factors
 
 #: What is left of balanced wrenches, relative to the sum of their sizes [-]: rounding of a few hundred products.
 BALANCED = 1e-13

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Mask, Vector
+from fixture_design.arrays import Mask, Vector, Weights
 from fixture_design.cones.kernel.balance import Guesses, balance_guesses
-from fixture_design.cones.second_order import ForceCones
+from fixture_design.cones.force_cones import ForceCones
 
 #: Singular values below this, relative to the largest of unit columns, are zero [-].
 RANK = 1e-9
@@ -50,7 +50,7 @@ class BalanceSpace:
     rows: Vector
     force: float
     maps: np.ndarray
-    units: Vector
+    units: Weights
     balls: Mask
     free: Mask
     fixed: Vector

@@ -104,7 +104,8 @@ def check(cones: ForceCones, fixed: np.ndarray, loads: np.ndarray, found: Factor
         least, value = 0.0, -float(fixed @ q)
         for start, size, head in zip(cones.starts, cones.sizes, cones.heads, strict=True):
             c = cones.maps[:, start : start + size].T @ q
-            reach = float(np.linalg.norm(np.abs(cones.maps[:, start : start + size]).T @ np.abs(q)))
+            parts = np.split(np.arange(len(q)), [2 if len(q) == 3 else 3])
+            reach = sum(np.linalg.norm(cones.maps[p, start : start + size]) * np.linalg.norm(q[p]) for p in parts)
             if np.isnan(head):
                 least = min(least, (c[0] - np.linalg.norm(c[1:])) / reach if reach > 0 else 0.0)
             else:

@@ -232,7 +232,8 @@ class _Problem:
             x[:, self.balls, 0] = state.tau[:, None]
             s, y = state.s + far[:, None, None] * move.slack, state.y + far[:, None] * move.y
             after = _State(x, s, y, state.tau, state.kappa)
-            state = after.where(after.is_inside(), state)
+            # a ray has nothing to be polished
+            state = after.where(after.is_inside() & (state.kappa < state.tau), state)
         return state
 
 

@@ -148,7 +148,7 @@ fn solve<const M: usize, const K: usize>(problem: &mut Embedding<M, K>) -> [i64;
         running = both(running, std::array::from_fn(|k| !done[k]));
         let to_middle = polished > 0 || round >= STEPS || running == [false; LANES];
         polished += i64::from(to_middle);
-        running = problem.step(if to_middle { [true; LANES] } else { running }, to_middle);
+        running = problem.step(if to_middle { problem.ended() } else { running }, to_middle);
         for lane in 0..LANES {
             taken[lane] += i64::from(running[lane] && !to_middle);
         }

@@ -232,6 +232,12 @@ impl<const M: usize, const K: usize> Embedding<M, K> {
         either(either(solved, no_x), either(no_bound, self.mu.below(Lanes::all(CENTRE_END))))
     }
 
+    /// Whether it is x / tau that the end is near to, and no ray.
+    #[inline(always)]
+    pub fn ended(&self) -> Chosen {
+        self.kappa.below(self.tau)
+    }
+
     /// H = sum of the squares of the columns, factored, and what dtau = 1 brings.
     #[inline(always)]
     fn factor(&mut self) {
