@@ -243,7 +243,7 @@ class _Proofs:
         x[:, space.free] = _onto(x[:, space.free])
         if space.stressed.any():
             left = wrenches + np.einsum("dnw,knw->kd", space.maps, x)
-            taken = -(left @ space.relief.T).reshape(len(x), int(space.stressed.sum()), x.shape[2])
+            taken = -(left @ space.relief.T).reshape(len(x), int(space.stressed.sum()), space.maps.shape[2])
             strict = margins_of(space.stress[space.stressed])
             short = (-margins_of(taken) / strict).max(axis=1) + _ROOM * np.abs(taken).max(axis=(1, 2))
             x[:, space.stressed] = taken + np.maximum(short, 0.0)[:, None, None] * space.stress[space.stressed]
@@ -303,7 +303,7 @@ class _Proofs:
 
     def factors(self) -> Factors:
         """The bounds in the units that were given."""
-        space, cones = self.space, self.space.cones
+        space = self.space
         sizes = np.where(self.sizes > 0, self.sizes, 1.0)
         endless = np.isposinf(self.lower)
         x = self.x * space.units[:, None]
@@ -316,7 +316,7 @@ class _Proofs:
 
     def _columns(self, x: np.ndarray, held: Mask) -> np.ndarray:
         """One number a column of the maps; clamps without friction as well, where the fixed wrench is held."""
-        space, cones = self.space, self.space.cones
+        cones = self.space.cones
         columns = np.zeros((len(x), cones.maps.shape[1] + 1))
         columns[:, cones.places[:, : x.shape[2]]] = x
         clamps = ~np.isnan(cones.heads)

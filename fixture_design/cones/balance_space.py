@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Mask, Vector, Weights
-from fixture_design.cones.kernel.balance import Guesses, balance_guesses
 from fixture_design.cones.force_cones import ForceCones
+from fixture_design.cones.kernel.balance import Guesses, balance_guesses
 
 #: Singular values below this, relative to the largest of unit columns, are zero [-].
 RANK = 1e-9
@@ -63,7 +63,7 @@ class BalanceSpace:
 
     @staticmethod
     def of(cones: ForceCones, fixed: Vector, threads: int | None) -> BalanceSpace:
-        d, n = cones.maps.shape[0], len(cones.sizes)
+        d = cones.maps.shape[0]
         padded = np.concatenate([cones.maps, np.zeros((d, 1))], axis=1)[:, cones.places]
         width = min(max(int(cones.sizes.max(initial=2)), 2 if d <= 3 else 3), 4)
         padded = padded[:, :, :width]

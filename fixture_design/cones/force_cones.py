@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from fixture_design.arrays import Weights
+from fixture_design.arrays import Indices, Weights
 from fixture_design.errors import ConeError
 
 #: Cones have as many numbers at most: a normal force, two of friction, a moment of friction about the normal.
@@ -29,8 +29,8 @@ class ForceCones:
     """
 
     maps: Float[np.ndarray, "d s"]
-    sizes: Int[np.ndarray, "n"]
-    heads: Float[np.ndarray, "n"]
+    sizes: Indices
+    heads: Weights
 
     def __post_init__(self) -> None:
         if self.maps.ndim != 2 or self.sizes.shape != self.heads.shape or self.sizes.sum() != self.maps.shape[1]:
@@ -43,7 +43,7 @@ class ForceCones:
             raise ConeError(f"heads must be >= 0, or NaN where they are free: {self.heads.tolist()}")
 
     @property
-    def starts(self) -> Int[np.ndarray, "n"]:
+    def starts(self) -> Indices:
         """The first column of each cone."""
         return np.cumsum(self.sizes) - self.sizes
 

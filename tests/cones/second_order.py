@@ -117,4 +117,3 @@ def check(cones: ForceCones, fixed: np.ndarray, loads: np.ndarray, found: Factor
         else:
             assert load @ q == np.float64(1.0) or abs(load @ q - 1) < 1e-12 * max(1.0, float(np.abs(load) @ np.abs(q)))
             assert abs(value - upper) <= 1e-11 * max(abs(upper), float(np.abs(fixed) @ np.abs(q)), 1e-300)
-

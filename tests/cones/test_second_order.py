@@ -1,4 +1,4 @@
-"""Largest factors: every proof checked by products alone, Clarabel's optimum in every bracket, ties and ends as well."""
+"""Largest factors: proofs checked by products alone, Clarabel's optimum in every bracket, ties and ends."""
 
 from __future__ import annotations
 
@@ -130,7 +130,11 @@ def test_nothing_pushes():
         cones_of([spatial_map(np.ones(3), np.array([0, 0, 1.0]), 0.3, 3)], [0.0]),
     ):
         loads = np.array([[1.0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
-        for fixed, factors in ((np.zeros(6), [0, np.inf]), (np.eye(6)[0], [-1, -np.inf]), (np.eye(6)[1], [-np.inf] * 2)):
+        for fixed, factors in (
+            (np.zeros(6), [0, np.inf]),
+            (np.eye(6)[0], [-1, -np.inf]),
+            (np.eye(6)[1], [-np.inf] * 2),
+        ):
             found = largest_factors(cones, fixed, loads)
             check(cones, fixed, loads, found)
             np.testing.assert_array_equal(found.upper, factors)
@@ -167,7 +171,11 @@ def test_more_pushes_hold_no_less():
 
 def test_threads_and_company_change_nothing():
     rng = np.random.default_rng(4)
-    cones, fixed, loads = contacts(rng, 6, 8, sided=True, most_friction=0.5), rng.normal(size=6), rng.normal(size=(11, 6))
+    cones, fixed, loads = (
+        contacts(rng, 6, 8, sided=True, most_friction=0.5),
+        rng.normal(size=6),
+        rng.normal(size=(11, 6)),
+    )
     all_at_once = largest_factors(cones, fixed, loads, threads=3)
     for k in range(11):
         alone = largest_factors(cones, fixed, loads[k : k + 1], threads=1)

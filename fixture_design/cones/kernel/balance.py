@@ -69,7 +69,7 @@ def balance_guesses(
     """The interior point for k loads.
 
     Args:
-        maps: M, shape (r, n, w): cones padded with zero columns to one width w, from 2 to 4. A ball's first column is zero.
+        maps: M, shape (r, n, w): cones padded with zero columns to one width w, 2 to 4. A ball's first column is zero.
         balls: shape (n,), bool: cones whose t is 1.
         fixed: f, shape (k, r).  loads: shape (k, r), unit.
         seek: whether lambda is to be large; False asks only for some x.
@@ -318,7 +318,7 @@ class _System:
 
     def direction(self, goal: np.ndarray, goal_tau: np.ndarray, part: np.ndarray) -> _Move:
         """W^-1 dx + W ds = goal, kappa dtau + tau dkappa = goal_tau, and ``part`` of the residuals gone."""
-        problem, state, balls = self.problem, self.state, self.problem.balls
+        problem, state = self.problem, self.state
         primal, dual, gap = self.missing
         primal, dual, gap = primal * part[:, None], dual * part[:, None, None], gap * part
         level = _across(self.normals, goal - self.scaling.times(dual))
