@@ -200,3 +200,48 @@ fn set_up<const R: usize, const M: usize, const K: usize>(
         problem.cones.push(cone);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Pushes up, with friction 1/2, and a clamp down that rubs with 1/2: columns [t, z] each.
+    const MAPS: [[f64; 3]; 6] =
+        [[0.0, 1.0, -1.0], [0.5, 0.0, 0.0], [0.0, 1.0, 1.0], [0.5, 0.0, 0.0], [0.0; 3], [0.5, 0.0, 0.0]];
+
+    fn guesses(fixed: [f64; 3], loads: &[[f64; 3]], threads: usize) -> Guesses<3> {
+        let pushes = Pushes { maps: &MAPS, balls: &[false, false, true], seek: true };
+        balance_guesses::<3, 2, 2>(&pushes, &vec![fixed; loads.len()], loads, threads)
+    }
+
+    #[test]
+    fn friction_holds_half_of_what_presses() {
+        // the clamp and the weight press with 1 and 3; the two below rub with half of 4, the clamp with half of 1
+        let found = guesses([0.0, -4.0, 0.0], &[[1.0, 0.0, 0.0]], 1);
+        let x: Vec<f64> = found.forces.iter().map(|value| value / found.sizes[0]).collect();
+        assert!((x[0] + x[2] - 4.0).abs() < 1e-7);
+        assert!((0.5 * (x[1] + x[3] + x[5]) + 2.5).abs() < 1e-7);
+        let q = found.motions[0].map(|value| value / found.sizes[0]);
+        assert!((q[0] - 1.0).abs() < 1e-7 && (4.0 * q[1] + 0.5 * q[0].abs() - 2.5).abs() < 1e-7);
+    }
+
+    #[test]
+    fn what_has_no_end_ends_in_a_ray() {
+        // down: the two below take anything; up, when nothing presses them: nothing holds
+        assert!(guesses([0.0, -4.0, 0.0], &[[0.0, -1.0, 0.0]], 1).sizes[0] < 1e-9);
+        assert!(guesses([0.0, 4.0, 0.0], &[[1.0, 0.0, 0.0]], 1).sizes[0] < 1e-9);
+    }
+
+    #[test]
+    fn neighbours_and_threads_change_nothing() {
+        let mut random = Random::new(5);
+        let loads: Vec<[f64; 3]> = (0..13).map(|_| crate::vector::unit(&random.vector())).collect();
+        let together = guesses([0.1, -4.0, 0.2], &loads, 3);
+        for (number, load) in loads.iter().enumerate() {
+            let alone = guesses([0.1, -4.0, 0.2], &[*load], 1);
+            assert!((alone.sizes[0] - together.sizes[number]).abs() <= 1e-3 * alone.sizes[0].max(1e-6));
+        }
+        assert!(guesses([0.1, -4.0, 0.2], &[], 2).sizes.is_empty());
+    }
+}
