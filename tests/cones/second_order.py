@@ -101,7 +101,7 @@ def check(cones: ForceCones, fixed: np.ndarray, loads: np.ndarray, found: Factor
             check_pushes(cones, found.forces[k], fixed + lower * load, sizes + abs(lower) * np.abs(load).sum())
         if np.isposinf(upper):
             continue
-        least, value = 0.0, -float(fixed @ q)
+        least, value, terms = 0.0, -float(fixed @ q), float(np.abs(fixed) @ np.abs(q))
         for start, size, head in zip(cones.starts, cones.sizes, cones.heads, strict=True):
             c = cones.maps[:, start : start + size].T @ q
             parts = np.split(np.arange(len(q)), [2 if len(q) == 3 else 3])
@@ -109,11 +109,11 @@ def check(cones: ForceCones, fixed: np.ndarray, loads: np.ndarray, found: Factor
             if np.isnan(head):
                 least = min(least, (c[0] - np.linalg.norm(c[1:])) / reach if reach > 0 else 0.0)
             else:
-                value += head * (np.linalg.norm(c[1:]) - c[0])
+                value, terms = value + head * (np.linalg.norm(c[1:]) - c[0]), terms + head * reach
         assert least >= -LEFT
         if np.isneginf(upper):
             assert abs(load @ q) <= LEFT * (np.abs(load) @ np.abs(q))
             assert value < 0
         else:
             assert load @ q == np.float64(1.0) or abs(load @ q - 1) < 1e-12 * max(1.0, float(np.abs(load) @ np.abs(q)))
-            assert abs(value - upper) <= 1e-11 * max(abs(upper), float(np.abs(fixed) @ np.abs(q)), 1e-300)
+            assert abs(value - upper) <= 1e-11 * max(abs(upper), terms, 1e-300)
