@@ -18,8 +18,13 @@ from fixture_design.cones.force_cones import Factors
 BALANCED = 1e-13
 #: A motion may be pushed along by this much of a cone's reach, where no strict motion repairs it [-].
 OPPOSED = 1e-14
-#: A wrench that nothing can take up stands out this far from rounding, relative to the sum of sizes [-].
-STANDS_OUT = 1e-12
+#: A wrench that nothing can take up stands out this far from rounding, relative to the sum of sizes [-]: far enough
+#: that no pushes of reasonable size make up for it by what a motion may be pushed along.
+STANDS_OUT = 1e-9
+#: Pushes larger than this, next to what is fixed, hold it by rounding only [-].
+_LARGEST = 1e7
+#: Bounds may cross by this much, relative to their sizes or to what is fixed [-].
+_CROSSED = 1e-12
 #: Guesses that are this much larger than their tau are rays [-].
 _RAY = 1e9
 #: Pushes this small next to the largest may be left out [-].
@@ -113,6 +118,8 @@ class _Proofs:
         self._bound(which[finite], found.motions[finite] @ space.turn)
         first = found.forces / found.sizes[:, None, None]
         self._reach(which[finite], first[finite])
+        if not space.fixed.any():
+            self._reach(which, np.zeros(first.shape))
         lost = np.flatnonzero(np.isneginf(self.lower[which]) | ~finite)
         if not len(lost):
             return
@@ -256,7 +263,7 @@ class _Proofs:
 
     def _balances(self, left: np.ndarray, x: np.ndarray, sizes: np.ndarray) -> Mask:
         sizes = sizes + np.linalg.norm(x, axis=2) @ self.reach
-        return np.linalg.norm(left, axis=1) <= BALANCED * sizes
+        return (np.linalg.norm(left, axis=1) <= BALANCED * sizes) & (sizes <= _LARGEST)
 
     def _opposition(self, motions: np.ndarray) -> np.ndarray:
         """M^T q, shape (k, n, w)."""
@@ -304,6 +311,7 @@ class _Proofs:
     def factors(self) -> Factors:
         """The bounds in the units that were given."""
         space = self.space
+        self._withdraw()
         sizes = np.where(self.sizes > 0, self.sizes, 1.0)
         endless = np.isposinf(self.lower)
         x = self.x * space.units[:, None]
@@ -313,6 +321,14 @@ class _Proofs:
         scale = space.force / sizes
         motions = self.motions * space.rows / sizes[:, None]
         return Factors(self.lower * scale, self.upper * scale, forces, motions, starts)
+
+    def _withdraw(self) -> None:
+        """Takes both bounds back where they cross: a tie that rounding decides both ways."""
+        sizes = np.maximum(np.maximum(np.abs(self.lower), np.abs(self.upper)), 1.0)
+        sizes = np.where(np.isfinite(sizes), sizes, 0.0)
+        tied = self.lower > self.upper + _CROSSED * sizes
+        self.lower[tied], self.upper[tied] = -np.inf, np.inf
+        self.x[tied], self.motions[tied], self.starts[tied] = 0.0, 0.0, 0.0
 
     def _columns(self, x: np.ndarray, held: Mask) -> np.ndarray:
         """One number a column of the maps; clamps without friction as well, where the fixed wrench is held."""

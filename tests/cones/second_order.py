@@ -77,43 +77,70 @@ def check_pushes(cones: ForceCones, x: np.ndarray, wrench: np.ndarray, sizes: fl
         assert np.linalg.norm(z) <= t * (1 + 1e-15)
         if not np.isnan(head):
             assert t == (head if held else 0.0)
-    reach = np.abs(cones.maps) @ np.abs(x)
-    # forces and moments each by their own sizes
-    for part in np.split(np.arange(len(wrench)), [2 if len(wrench) == 3 else 3]):
-        assert np.linalg.norm((wrench + cones.maps @ x)[part]) <= LEFT * (reach.sum() + sizes)
+    reach = np.linalg.norm(cones.maps, axis=0) @ np.abs(x)
+    assert np.linalg.norm(wrench + cones.maps @ x) <= LEFT * (reach + sizes)
 
 
 def check(cones: ForceCones, fixed: np.ndarray, loads: np.ndarray, found: Factors) -> None:
-    """Every bound by its own proof: products only."""
-    for k, load in enumerate(loads):
-        lower, upper, q = found.lower[k], found.upper[k], found.motions[k]
+    """Every bound by its own proof: products only, with moments by the length that makes the maps' parts alike."""
+    rows = np.ones(len(fixed))
+    plane = 2 if len(fixed) == 3 else 3
+    forces, moments = np.linalg.norm(cones.maps[:plane]), np.linalg.norm(cones.maps[plane:])
+    rows[plane:] = forces / moments if forces > 0 and moments > 0 else 1.0
+    cones = ForceCones(cones.maps * rows[:, None], cones.sizes, cones.heads)
+    fixed, loads, motions = fixed * rows, loads * rows, found.motions / rows
+    made = np.linalg.norm(fixed) + np.linalg.norm(cones.maps, axis=0).max(initial=0.0) * np.nansum(cones.heads)
+    for load, lower, upper, x, start, q in zip(
+        loads, found.lower, found.upper, found.forces, found.starts, motions, strict=True
+    ):
         # factors are as exact as the wrenches that they make up for
-        made = np.linalg.norm(fixed) + np.linalg.norm(cones.maps, axis=0).max(initial=0.0) * np.nansum(cones.heads)
-        scale = max(abs(lower), abs(upper), made / np.linalg.norm(load) if load.any() else 0.0)
-        assert lower <= upper + (1e-12 * scale if np.isfinite(scale) else 0.0)
-        sizes = float(np.abs(fixed).sum())
+        size = float(np.linalg.norm(load))
+        scale = max(abs(lower), abs(upper), made / size if size > 0 else 0.0)
+        assert lower <= upper + (LEFT * scale if np.isfinite(scale) else 0.0)
         if np.isposinf(lower):
-            check_pushes(cones, found.forces[k], load, float(np.abs(load).sum()), held=False)
-            held = fixed + cones.maps @ found.starts[k]
-            factor = -(held @ load) / (load @ load) if load.any() else 0.0
-            check_pushes(cones, found.starts[k], fixed + factor * load, sizes + abs(factor) * np.abs(load).sum())
+            check_pushes(cones, x, load, size, held=False)
+            factor = -((fixed + cones.maps @ start) @ load) / size**2 if size > 0 else 0.0
+            check_pushes(cones, start, fixed + factor * load, made + abs(factor) * size)
         elif np.isfinite(lower):
-            check_pushes(cones, found.forces[k], fixed + lower * load, sizes + abs(lower) * np.abs(load).sum())
-        if np.isposinf(upper):
-            continue
-        least, value, terms = 0.0, -float(fixed @ q), float(np.abs(fixed) @ np.abs(q))
-        for start, size, head in zip(cones.starts, cones.sizes, cones.heads, strict=True):
-            c = cones.maps[:, start : start + size].T @ q
-            parts = np.split(np.arange(len(q)), [2 if len(q) == 3 else 3])
-            reach = sum(np.linalg.norm(cones.maps[p, start : start + size]) * np.linalg.norm(q[p]) for p in parts)
-            if np.isnan(head):
-                least = min(least, (c[0] - np.linalg.norm(c[1:])) / reach if reach > 0 else 0.0)
-            else:
-                value, terms = value + head * (np.linalg.norm(c[1:]) - c[0]), terms + head * reach
-        assert least >= -LEFT
-        if np.isneginf(upper):
-            assert abs(load @ q) <= LEFT * (np.abs(load) @ np.abs(q))
-            assert value < 0
+            check_pushes(cones, x, fixed + lower * load, made + abs(lower) * size)
+        if not np.isposinf(upper):
+            check_motion(cones, fixed, load, float(upper), q)
+
+
+def check_motion(cones: ForceCones, fixed: np.ndarray, load: np.ndarray, upper: float, q: np.ndarray) -> None:
+    """No free push goes along q, and what clamps can do along it gives the bound."""
+    length = float(np.linalg.norm(q))
+    value, terms = -float(fixed @ q), float(np.linalg.norm(fixed)) * length
+    for start, size, head in zip(cones.starts, cones.sizes, cones.heads, strict=True):
+        mine = cones.maps[:, start : start + size]
+        c, reach = mine.T @ q, float(np.linalg.norm(mine)) * length
+        if np.isnan(head):
+            assert c[0] - np.linalg.norm(c[1:]) >= -LEFT * reach
         else:
-            assert load @ q == np.float64(1.0) or abs(load @ q - 1) < 1e-12 * max(1.0, float(np.abs(load) @ np.abs(q)))
-            assert abs(value - upper) <= 1e-11 * max(abs(upper), terms, 1e-300)
+            value, terms = value + head * (np.linalg.norm(c[1:]) - c[0]), terms + head * reach
+    work = float(np.isfinite(upper))
+    assert abs(load @ q - work) <= LEFT * max(work, np.linalg.norm(load) * length)
+    if work:
+        assert abs(value - upper) <= 10 * LEFT * max(abs(upper), terms)
+    else:
+        assert value < -LEFT * terms
+
+
+def on_a_grid(rng: np.random.Generator) -> tuple[ForceCones, np.ndarray, np.ndarray]:
+    """Contacts on grid points along the axes, often in line, opposed, coplanar or alike, with loads on the grid: ties."""
+    dimension, count = int(rng.choice([3, 6])), int(rng.integers(1, 12))
+    plane = 2 if dimension == 3 else 3
+    points = rng.integers(-2, 3, size=(count, plane)) + rng.choice([0.0, 0.0, 0.0, 100.0])
+    if rng.random() < 0.3:
+        points[:, -1] = points[0, -1]
+    axes = np.vstack([np.eye(plane), -np.eye(plane)])
+    normals = axes[rng.integers(len(axes), size=count)]
+    kind, sizes = (planar_map, (1, 2)) if plane == 2 else (spatial_map, (1, 3, 4))
+    chosen, frictions = rng.choice(sizes, size=count), rng.choice([0.0, 0.5, 1.0], size=count)
+    maps = [kind(p, n, mu, k) for p, n, mu, k in zip(points, normals, frictions, chosen, strict=True)]
+    force, metres = 10.0 ** rng.choice([0, -3, 9]), 10.0 ** rng.choice([0, -3, 2])
+    units = np.where(np.arange(dimension) < plane, 1.0, metres)
+    heads = np.where(rng.random(count) < 0.4, force * rng.choice([0.0, 1.0, 2.0], size=count), np.nan)
+    fixed = rng.integers(-2, 3, size=dimension) * rng.choice([0.0, force]) * units
+    loads = np.vstack([rng.integers(-1, 2, size=(4, dimension)), rng.normal(size=(2, dimension))]) * units
+    return ForceCones(np.hstack(maps) * units[:, None], chosen, heads), fixed, loads

@@ -9,7 +9,7 @@ from fixture_design.cones import kernel
 from fixture_design.cones.kernel.balance import balance_guesses
 from fixture_design.cones.second_order import ForceCones, largest_factors
 from fixture_design.errors import ConeError
-from tests.cones.second_order import check, clarabel, contacts, planar_map, spatial_map, unit
+from tests.cones.second_order import check, clarabel, contacts, on_a_grid, planar_map, spatial_map, unit
 
 #: Clarabel's factors are good to about this [-].
 CLARABEL = 2e-6
@@ -53,6 +53,18 @@ def test_clarabel_s_factor_is_in_every_bracket(seed: int):
         assert upper - lower <= NARROW * size
         room = max(CLARABEL * size, CLARABEL_GAP)
         assert lower - room <= said <= upper + room
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_ties_are_decided_by_proof_or_left_open(seed: int):
+    rng, open_ends, count = np.random.default_rng(seed), 0, 0
+    for _ in range(20):
+        cones, fixed, loads = on_a_grid(rng)
+        found = largest_factors(cones, fixed, loads)
+        check(cones, fixed, loads, found)
+        open_ends += int((found.lower < found.upper)[np.isinf(found.upper - found.lower)].sum())
+        count += len(loads)
+    assert open_ends <= 0.1 * count
 
 
 def test_a_block_slides_when_friction_says_so():
