@@ -127,7 +127,7 @@ def check_motion(cones: ForceCones, fixed: np.ndarray, load: np.ndarray, upper: 
 
 
 def on_a_grid(rng: np.random.Generator) -> tuple[ForceCones, np.ndarray, np.ndarray]:
-    """Contacts on grid points along the axes, often in line, opposed, coplanar or alike, with loads on the grid: ties."""
+    """Contacts on grid points along the axes, often in line, opposed, coplanar or alike; loads on the grid: ties."""
     dimension, count = int(rng.choice([3, 6])), int(rng.integers(1, 12))
     plane = 2 if dimension == 3 else 3
     points = rng.integers(-2, 3, size=(count, plane)) + rng.choice([0.0, 0.0, 0.0, 100.0])
