@@ -27,10 +27,10 @@ __all__ = ["Factors", "ForceCones", "largest_factors"]
 def largest_factors(cones: ForceCones, fixed: Vector, loads: Rows, *, threads: int | None = None) -> Factors:
     """Bounds on the largest factor of each load, from one interior point for all of them (`kernel.balance`).
 
-    Brackets are usually narrower than 1e-8 of the factor; ties (a wrench on the very boundary of what is held) may leave
-    a bound unproven: -inf below, +inf above. A load of zero has the factor +inf if the fixed wrench is
-    held, and -inf if it cannot be. Where cones push against each other (opposed contacts), or all on one line or plane,
-    what they cannot do is taken out first, so that what is left has strictly feasible motions (`balance_space`).
+    Brackets are usually narrower than 1e-8 of the factor. A tie (a wrench on the very boundary of what is held) may
+    leave a bound unproven: -inf below, +inf above. A load of zero has the factor +inf if the fixed wrench is held, and
+    -inf if it cannot be. Where cones push against each other (opposed contacts), or all on one line or plane, what they
+    cannot do is taken out first, so that what is left has strictly feasible motions (`balance_space`).
 
     Args:
         fixed: f, shape (d,), e.g. gravity.  loads: shape (k, d).
