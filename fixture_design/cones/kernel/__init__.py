@@ -8,12 +8,14 @@
 * `closure_test`, `closure_tests`, `membership_tests`: closure, strong accessibility, membership without CONVERT, of one
   set of rows or hundreds of thousands; `branch_sets` lists the branches of a union for them.
 * `faces_of`, `exact_faces`: all faces of a cone, which are the contact modes.
+* `balance_guesses`: how many times loads can be held by pushes in second-order cones, for `second_order` to prove.
 * `exact_*`: the same in rational arithmetic, for rational data.
 
 They take unit rows and a relative zero, and report the values they decided on. Each comes twice: in numpy, to read, and
 in Rust (src/), much faster, where that was built; `NAME` says which runs, and `using` chooses (`choice`).
 """
 
+from fixture_design.cones.kernel.balance import Guesses, balance_guesses
 from fixture_design.cones.kernel.branches import branch_sets
 from fixture_design.cones.kernel.choice import NAME, available, using
 from fixture_design.cones.kernel.closure import (
@@ -53,10 +55,12 @@ __all__ = [
     "ExactDescription",
     "ExactPartition",
     "Faces",
+    "Guesses",
     "Membership",
     "Memberships",
     "TuckerPartition",
     "available",
+    "balance_guesses",
     "branch_sets",
     "closure_bound",
     "closure_test",

@@ -2,12 +2,15 @@
 //! `fixture_design.cones.kernel` says what they are, and has the same in numpy.
 
 pub mod adjacency;
+pub mod balance;
+mod balance_step;
 pub mod batch;
 pub mod certificate;
 pub mod closure;
 pub mod double_description;
 pub mod exact;
 pub mod faces;
+mod lanes;
 pub mod mask;
 pub mod minimum_norm;
 pub mod nonnegative;

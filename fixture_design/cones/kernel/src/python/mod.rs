@@ -5,6 +5,7 @@
 //! the crate works; long work asks now and then whether Ctrl-C was pressed.
 
 mod arrays;
+mod balances;
 mod closures;
 mod cones;
 mod exact;
@@ -27,6 +28,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(closures::closure, module)?)?;
     module.add_function(wrap_pyfunction!(closures::closures, module)?)?;
     module.add_function(wrap_pyfunction!(closures::memberships, module)?)?;
+    module.add_function(wrap_pyfunction!(balances::balance_guesses, module)?)?;
     module.add_function(wrap_pyfunction!(exact::exact_double_description, module)?)?;
     module.add_function(wrap_pyfunction!(exact::exact_tucker_partition, module)?)?;
     module.add_function(wrap_pyfunction!(exact::exact_sign, module)?)?;
