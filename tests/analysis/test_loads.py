@@ -250,6 +250,17 @@ def test_an_edge_pushes_with_one_of_its_faces():
     assert held([edge, *against], {}, up).answer is Answer.NO
 
 
+def test_edges_along_edges_leave_a_no_open():
+    """Their points may take either face, which the branches of their two ends do not tell."""
+    ends = [Contact.of(name, "locator", [x, 0], [[[1, -1], [-1, -1]]]) for name, x in (("E#1", 0), ("E#2", 1))]
+    linked = [replace(ends[0], linked="E#2"), replace(ends[1], linked="E#1")]
+    up = LoadRow("up", None, np.array([0, 10.0, 0]))
+    assert held(ends, {}, up).answer is Answer.NO
+    verdict = held(linked, {}, up)
+    assert verdict.answer is Answer.UNDECIDED
+    assert "parallel convex edges" in verdict.reason
+
+
 def test_many_branches_are_undecided_not_guessed():
     edges = [Contact.of(f"E{i}", "locator", [i, 0], [[[1, -1], [-1, -1]]]) for i in range(8)]
     verdict = held(edges, {}, LoadRow("up", None, np.array([0, 10.0, 0])))
