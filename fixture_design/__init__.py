@@ -21,7 +21,9 @@ The folders state the theory, and each imports only from those to its right::
   same as flat arrays.
 * `layout`: the nouns: part, element, layout, group, verdict.
 * `analysis`: one file a question: form closure, accessibility, force closure, determinacy, hybrid control. Unions are
-  searched, not listed (`branches`); every answer comes with bounds on the margin that prove it (`bounds`).
+  searched, not listed (`branches`); every answer comes with bounds on the margin that prove it (`bounds`). Forces:
+  `contact_forces` are cones, `loads` asks a solver for balances, `balances` makes exact ones of its suggestions, and
+  `holding`, `seating`, `preloads` and `stiffness` are the questions.
 * `geometry`: parts from URDF, meshes and polygons, their facets and round surfaces (`geometry.smooth_regions`);
   contacts of tips (points, balls, pads, lines, pins) through Drake's signed distance, and from polygons; of fixture
   bodies all there are (`geometry.bodies`), each from the tangent cones of both sides (`contacts.polyhedral`); the part

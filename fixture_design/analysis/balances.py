@@ -27,7 +27,8 @@ def repaired_forces(cones: ForceCones, wrench: Weights, x: Weights) -> tuple[Wei
     Returns:
         x, and |wrench + maps @ x| relative to the largest of |wrench|, the largest force, and the unit.
     """
-    best, least = inside(cones, x if np.any(wrench) else np.zeros_like(x)), np.inf
+    acted_on = np.any(wrench) or np.nan_to_num(cones.heads).any()
+    best, least = inside(cones, x if acted_on else np.zeros_like(x)), np.inf
     x = best
     for _ in range(_STEPS):
         left = wrench + cones.maps @ x

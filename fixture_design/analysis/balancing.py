@@ -110,9 +110,16 @@ def settle(branches: Sequence[ForceBranch], complete: bool, wrench: Vector, tole
         if proof is not None:
             against.append(proof)
         reason = reason or why
+    if reason is None and edges_along_edges(branches[0].inner.contacts):
+        reason = "convex edges touch along parallel convex edges, whose points may take different faces"
     if reason is None:
         return Settled(against=tuple(against))
     return Settled(reason=reason)
+
+
+def edges_along_edges(contacts: Sequence[Contact]) -> bool:
+    """Whether contacts stand for segments along which every point has alternatives of its own: branches are too few."""
+    return any(c.linked is not None and any(len(clause) > 1 for clause in c.clauses) for c in contacts)
 
 
 def _settle(

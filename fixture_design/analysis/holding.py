@@ -60,10 +60,12 @@ def _held(
     settled = settle(branches, complete, constant + row.wrench, tolerances)
     if np.abs(row.wrench).max() <= ZERO_ROW:
         return _without_load(row, settled)
-    looked_at = [settled.branch] if settled.branch is not None else branches
-    ranges = [factor_range(branch, constant, row.wrench) for branch in looked_at]
+    ranges = [factor_range(branch, constant, row.wrench) for branch in branches]
     best = max(ranges, key=lambda found: found.reserve)
-    reserve = None if best.reserve[1] < 0 else (max(best.reserve[0], 0.0), best.reserve[1])
+    most = max(found.reserve[1] for found in ranges) if complete else np.inf
+    reserve = None if most < 0 else (max(best.reserve[0], 0.0), most)
+    if settled.branch is not None:
+        ranges = [found for branch, found in zip(branches, ranges, strict=True) if branch is settled.branch]
     needed = max(0.0, next(filter(np.isfinite, best.needed[::-1]), 0.0))
     answer, reason = _answer(settled, ranges)
     verdict = LoadVerdict(row.load, row.row, answer, reserve, needed, None, best.first, reason)

@@ -19,7 +19,7 @@ from fixture_design.analysis.loads import solve_cones
 from fixture_design.arrays import Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, element_name
-from fixture_design.tolerances import LOAD_TIE, Tolerances
+from fixture_design.tolerances import LOAD_TIE, SOLVED, Tolerances
 
 #: How much further than they go the loads are taken, one after the other until the preloads found are verified [-].
 MARGINS = (1e-4, 1e-3, 1e-2)
@@ -122,7 +122,9 @@ def _program(
     solved = solve_cones(cones, columns, sides, cost)
     if not solved.found:
         return None
-    values = np.clip(solved.y * (1 + LOAD_TIE), low, high) * unit
+    # rounded up a little, and what is nothing but rounding down to nothing
+    wanted = np.where(solved.y > SOLVED, solved.y * (1 + LOAD_TIE), 0.0)
+    values = np.clip(wanted, low, high) * unit
     return {name: float(value) for name, value in zip(names, values, strict=True)}
 
 

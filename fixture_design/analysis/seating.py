@@ -14,7 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.analysis.balancing import ForceBranch, Settled, branches_of, gained, most_resistance, settle
+from fixture_design.analysis.balancing import (
+    ForceBranch,
+    Settled,
+    branches_of,
+    edges_along_edges,
+    gained,
+    most_resistance,
+    settle,
+)
 from fixture_design.analysis.contact_forces import ContactForces, ForceCones
 from fixture_design.analysis.loads import largest_factors
 from fixture_design.arrays import Vector, Weights
@@ -100,11 +108,15 @@ def _step(
     pressed = [n for n, p in found.items() if p.least[0] > LOAD_TIE * unit and len(p.proofs) == len(branches)]
     idle = tuple(n for n, p in found.items() if p.largest[1] <= LOAD_TIE * unit)
     reactions = {name: (_zeroed(p.least[0], unit), _zeroed(p.largest[1], unit)) for name, p in found.items()}
-    presses = {name: found[name].proofs for name in pressed}
     doubtful = [name for name in locators if name not in pressed and name not in idle]
     cause = f"friction leaves open whether the part is pressed against {', '.join(doubtful)}" if doubtful else None
-    answer = Answer.YES if complete and len(pressed) == len(locators) else Answer.UNDECIDED
-    return SeatingStep(clamp, answer, reactions, idle, (), settled.balance, cause, (), presses)
+    certain = complete and not edges_along_edges(acting)
+    if not certain:
+        pressed, cause = [], cause or "its alternatives leave open whether the part is pressed"
+    answer = Answer.YES if len(pressed) == len(locators) else Answer.UNDECIDED
+    return SeatingStep(
+        clamp, answer, reactions, idle, (), settled.balance, cause, (), {name: found[name].proofs for name in pressed}
+    )
 
 
 def _zeroed(force: float, unit: float) -> float:

@@ -140,6 +140,38 @@ def test_brackets_by_pyramids_agree(seed):
             assert verdict.reserve[1] == pytest.approx(verdict.reserve[0], rel=1e-6, abs=1e-6)
 
 
+def coarse_case(seed: int):
+    """Planar contacts on a grid of few points and directions: ties, repeats and opposed normals abound."""
+    rng = np.random.default_rng(seed)
+    contacts, preloads = [], {}
+    for index in range(int(rng.integers(2, 8))):
+        normal = np.array([(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1)][rng.integers(6)], dtype=float)
+        role = "clamp" if rng.random() < 0.3 else "locator"
+        point = rng.integers(-2, 3, size=2).astype(float)
+        contacts.append(Contact.on_facet(f"C{index}", role, point, normal, float(rng.choice([0, 0, 0.5, 1.0]))))
+        if role == "clamp":
+            preloads[f"C{index}"] = float(rng.choice([0, 10, 100]))
+    weight, wrench = np.array([0, -10.0 * rng.integers(2), 0]), rng.integers(-3, 4, size=3) * 10.0
+    wrench[0] += 1.0  # never nothing
+    return contacts, preloads, weight, LoadRow("cut", None, wrench)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_planar_answers_are_those_of_a_linear_program(seed):
+    """In the plane pyramids are the cones: answers that are no tie and need no squeeze are the linear program's."""
+    contacts, preloads, weight, load = coarse_case(seed)
+    verdict = held(contacts, preloads, load, weight)
+    factors = pyramid_factors(contacts, preloads, weight, load.wrench, "inner")
+    inside = factors is not None and factors[0] < 1 - LINEAR and factors[1] > 1 + LINEAR
+    outside = factors is None or factors[0] > 1 + LINEAR or factors[1] < 1 - LINEAR
+    if not branches_of(contacts, preloads, DEFAULT)[0][0].alike:
+        assert not (inside and verdict.answer is Answer.NO)
+        assert not (outside and verdict.answer is Answer.YES)
+        return
+    expected = Answer.YES if inside else Answer.NO if outside else Answer.UNDECIDED
+    assert verdict.answer is expected
+
+
 def test_random_cases_have_all_answers():
     answers = [held(*(case := random_case(seed))[:2], case[3], case[2]).answer for seed in range(60)]
     assert set(answers) == {Answer.YES, Answer.NO, Answer.UNDECIDED}
@@ -216,6 +248,17 @@ def test_an_edge_pushes_with_one_of_its_faces():
     assert verdict.answer is Answer.NO
     assert len(verdict.others) == 1
     assert held([edge, *against], {}, up).answer is Answer.NO
+
+
+def test_edges_along_edges_leave_a_no_open():
+    """Their points may take either face, which the branches of their two ends do not tell."""
+    ends = [Contact.of(name, "locator", [x, 0], [[[1, -1], [-1, -1]]]) for name, x in (("E#1", 0), ("E#2", 1))]
+    linked = [replace(ends[0], linked="E#2"), replace(ends[1], linked="E#1")]
+    up = LoadRow("up", None, np.array([0, 10.0, 0]))
+    assert held(ends, {}, up).answer is Answer.NO
+    verdict = held(linked, {}, up)
+    assert verdict.answer is Answer.UNDECIDED
+    assert "parallel convex edges" in verdict.reason
 
 
 def test_many_branches_are_undecided_not_guessed():
