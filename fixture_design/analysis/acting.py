@@ -1,4 +1,4 @@
-"""What acts on the part besides contacts: gravity, loads, and what clamps push with; or why that is not known."""
+"""What acts on the part besides contacts: loads, and what clamps push with."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from fixture_design.arrays import Point, Vector, Weights
 from fixture_design.contacts import Contact, cross
-from fixture_design.layout import Group, Layout, Load, element_name
+from fixture_design.layout import Layout, Load, element_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,20 +19,6 @@ class LoadRow:
     load: str
     row: int | None
     wrench: Vector
-
-
-def gravity_wrench(layout: Layout, group: Group) -> Vector | str:
-    """The weight m g in the centre of mass, about W's origin; zero without gravity; a reason where it is not known."""
-    plane = 2 if layout.space == "planar" else 3
-    if not group.gravity or layout.gravity is None or not np.any(layout.gravity):
-        return np.zeros(3 * (plane - 1))
-    part = layout.part
-    if part is None or part.mass is None:
-        return "mass unknown: there is gravity, and `part` has no `mass`"
-    if part.center is None:
-        return "center of mass unknown: there is gravity, and `part` has no `center`"
-    force = part.mass * np.asarray(layout.gravity, dtype=np.float64)
-    return wrench_at(part.pose.points(np.asarray(part.center)[None])[0], force)
 
 
 def wrench_at(point: Point, force: Point, moment: Weights | None = None) -> Weights:

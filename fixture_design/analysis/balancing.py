@@ -57,6 +57,14 @@ class ForceBranch:
 
 
 @dataclass(frozen=True, eq=False)
+class Hint:
+    """What may settle it without a solver: inner forces x [N], or a motion of the outer ones."""
+
+    x: Weights | None = None
+    motion: Weights | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Settled:
     """A balance, or motions for all branches that there is none, or a reason."""
 
@@ -99,12 +107,23 @@ def _branch(
     return ForceBranch(choice, inner, outer, elements if rough & {*names} else (), unsure)
 
 
-def settle(branches: Sequence[ForceBranch], complete: bool, wrench: Vector, tolerances: Tolerances) -> Settled:
-    """Whether the contacts balance a wrench [N, N m] about W's origin, with their preloads: in any of the branches."""
+def settle(
+    branches: Sequence[ForceBranch],
+    complete: bool,
+    wrench: Vector,
+    tolerances: Tolerances,
+    hints: Sequence[Hint] | None = None,
+) -> Settled:
+    """Whether the contacts balance a wrench [N, N m] about W's origin, with their preloads: in any of the branches.
+
+    Args:
+        hints: for each branch what is tried first.
+    """
     against: list[Unbalanced] = []
     reason = None if complete else f"more than {MOST_FORCE_BRANCHES} choices of the faces that push"
-    for branch in branches:
-        proof, why = _settle(branch, wrench, tolerances)
+    for branch, hint in zip(branches, hints or [Hint()] * len(branches), strict=True):
+        proof = _hinted(branch, hint, wrench, tolerances)
+        proof, why = (proof, None) if proof is not None else _settle(branch, wrench, tolerances)
         if isinstance(proof, Balance):
             return Settled(proof, branch=branch)
         if proof is not None:
@@ -120,6 +139,19 @@ def settle(branches: Sequence[ForceBranch], complete: bool, wrench: Vector, tole
 def edges_along_edges(contacts: Sequence[Contact]) -> bool:
     """Whether contacts stand for segments along which every point has alternatives of its own: branches are too few."""
     return any(c.linked is not None and any(len(clause) > 1 for clause in c.clauses) for c in contacts)
+
+
+def _hinted(branch: ForceBranch, hint: Hint, wrench: Vector, tolerances: Tolerances) -> Balance | Unbalanced | None:
+    """The hint, if it is a proof."""
+    unit = branch.unit_for(wrench)
+    if hint.x is not None:
+        inner = branch.inner.in_units_of(unit)
+        x, left = repaired_forces(inner.cones, inner.applied(wrench) + inner.given, hint.x / unit)
+        if left <= WITNESS and (branch.unsure is None or _absorbs(inner, x)):
+            return Balance(wrench, inner.forces(x), left)
+    if hint.motion is not None and np.any(hint.motion):
+        return unbalanced(branch, branch.outer.in_units_of(unit), hint.motion, wrench, tolerances)
+    return None
 
 
 def _settle(

@@ -7,16 +7,16 @@ load is held if 1 is inside by more than a tie, and the balance is shown; it is 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from fixture_design.analysis.acting import LoadRow
-from fixture_design.analysis.balancing import ForceBranch, Settled, branches_of, settle
+from fixture_design.analysis.balancing import ForceBranch, Hint, Settled, branches_of, settle
 from fixture_design.analysis.contact_forces import ContactForces
-from fixture_design.analysis.loads import largest_factors
-from fixture_design.arrays import Vector, Weights
+from fixture_design.analysis.factors import FactorTable, factor_table
+from fixture_design.arrays import Rows, Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, LoadVerdict, element_name
 from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, ZERO_ROW, Tolerances
@@ -31,11 +31,13 @@ class FactorRange:
     Attributes:
         reserve: bracket of the largest one, needed: of the smallest one; both -inf and inf where there is none.
         first: what gives way beyond the reserve.
+        hint: forces or a motion for factor 1.
     """
 
     reserve: tuple[float, float]
     needed: tuple[float, float]
     first: First = ()
+    hint: Hint = field(default_factory=Hint)
 
 
 def held_loads(
@@ -51,16 +53,24 @@ def held_loads(
         preloads: of elements that push with a given force [N].
     """
     branches, complete = branches_of(contacts, preloads, tolerances)
-    return tuple(_held(branches, complete, constant, row, tolerances) for row in rows)
+    acting = [row for row in rows if np.abs(row.wrench).max() > ZERO_ROW]
+    wrenches = np.array([row.wrench for row in acting]).reshape(-1, len(constant))
+    found = [factor_ranges(branch, constant, wrenches) for branch in branches]
+    ranges = {id(row): [of_branch[k] for of_branch in found] for k, row in enumerate(acting)}
+    return tuple(_held(branches, complete, constant, row, ranges.get(id(row)), tolerances) for row in rows)
 
 
 def _held(
-    branches: Sequence[ForceBranch], complete: bool, constant: Vector, row: LoadRow, tolerances: Tolerances
+    branches: Sequence[ForceBranch],
+    complete: bool,
+    constant: Vector,
+    row: LoadRow,
+    ranges: Sequence[FactorRange] | None,
+    tolerances: Tolerances,
 ) -> LoadVerdict:
-    settled = settle(branches, complete, constant + row.wrench, tolerances)
-    if np.abs(row.wrench).max() <= ZERO_ROW:
-        return _without_load(row, settled)
-    ranges = [factor_range(branch, constant, row.wrench) for branch in branches]
+    if ranges is None:
+        return _without_load(row, settle(branches, complete, constant + row.wrench, tolerances))
+    settled = settle(branches, complete, constant + row.wrench, tolerances, [found.hint for found in ranges])
     best = max(ranges, key=lambda found: found.reserve)
     most = max(found.reserve[1] for found in ranges) if complete else np.inf
     reserve = None if most < 0 else (max(best.reserve[0], 0.0), most)
@@ -105,40 +115,40 @@ def _tie(found: FactorRange) -> str:
     return f"a tie: the load is the largest that is held{', at which ' + ', '.join(first) if first else ''}"
 
 
-def factor_range(branch: ForceBranch, constant: Vector, wrench: Vector) -> FactorRange:
-    """The bracket of the factors on ``wrench`` that a branch balances, with ``constant`` and its preloads."""
-    own = branch.unit_for(constant) if branch.pushed_with or np.any(constant) else branch.unit_for(wrench)
-    size = branch.unit_for(wrench) if not branch.pushed_with else _size(branch.inner, wrench)
-    # the load at the size of what is given, so that a factor is about 1 where something gives way
-    factor = own / size
-    low, high, first = _ends(branch.inner.in_units_of(own), constant, wrench * factor)
-    if branch.alike:
-        reserve, needed = (low[0], low[1]), (-high[1], -high[0])
-    else:
-        outer_low, outer_high, first = _ends(branch.outer.in_units_of(own), constant, wrench * factor)
-        reserve, needed = (low[0], outer_low[1]), (-outer_high[1], -high[0])
-    return FactorRange(_times(reserve, factor), _times(needed, factor), first)
+def factor_ranges(branch: ForceBranch, constant: Vector, wrenches: Rows) -> list[FactorRange]:
+    """The brackets of the factors on wrenches, shape (k, d), that a branch balances, with ``constant`` and preloads."""
+    given = bool(branch.pushed_with) or bool(np.any(constant))
+    own = branch.unit_for(constant) if given else 1.0
+    inner = branch.inner.in_units_of(own)
+    loads = np.array([inner.applied(wrench) for wrench in wrenches]).reshape(-1, len(inner.given))
+    # loads at the size of what is given, so that a factor is about 1 where something gives way
+    factors = 1 / np.abs(loads).max(axis=1)
+    loads *= factors[:, None]
+    fixed = inner.applied(constant) + inner.given
+    holds = factor_table(inner.cones, fixed, loads)
+    outer = inner if branch.alike else branch.outer.in_units_of(own)
+    limits = holds if branch.alike else factor_table(outer.cones, outer.applied(constant) + outer.given, loads)
+    return [_range(outer, holds, limits, k, float(factor), own) for k, factor in enumerate(factors)]
 
 
-def _size(forces: ContactForces, wrench: Vector) -> float:
-    return float(np.abs(forces.in_units_of(1.0).applied(wrench)).max())
+def _range(
+    outer: ContactForces, holds: FactorTable, limits: FactorTable, load: int, factor: float, unit: float
+) -> FactorRange:
+    """One load's: what inner forces hold, what limits the outer ones, and what to try at factor 1."""
+    up, down = holds.ends(load)
+    reserve = _rounded(holds.lower[up]), _rounded(limits.upper[up])
+    needed = _rounded(-limits.upper[down]), _rounded(-holds.lower[down])
+    first: First = ()
+    if np.isfinite(reserve[1]) and np.any(limits.motions[up]):
+        first = giving_way(outer, limits.forces[up], limits.motions[up], limits.forces[down])
+    x = holds.forces_at(load, 1 / factor)
+    beyond = up if limits.upper[up] < 1 / factor else down if -limits.upper[down] > 1 / factor else None
+    hint = Hint(None if x is None else x * unit, None if beyond is None else limits.motions[beyond])
+    return FactorRange(_times(reserve, factor), _times(needed, factor), first, hint)
 
 
 def _times(bracket: tuple[float, float], factor: float) -> tuple[float, float]:
     return bracket[0] * factor, bracket[1] * factor
-
-
-def _ends(
-    forces: ContactForces, constant: Vector, load: Vector
-) -> tuple[tuple[float, float], tuple[float, float], First]:
-    """Brackets of the largest factor and of the largest factor on the reversed load, and what gives way first."""
-    fixed, along = forces.applied(constant) + forces.given, forces.applied(load)
-    found = largest_factors(forces.cones, fixed, np.array([along, -along]))
-    brackets = [(_rounded(low), _rounded(high)) for low, high in zip(found.lower, found.upper, strict=True)]
-    first: First = ()
-    if np.isfinite(brackets[0][1]) and np.any(found.motions[0]):
-        first = giving_way(forces, found.forces[0], found.motions[0], found.forces[1])
-    return brackets[0], brackets[1], first
 
 
 def _rounded(factor: float) -> float:

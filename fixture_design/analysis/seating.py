@@ -1,10 +1,10 @@
 """Seating: whether gravity and the clamps, closed one after the other, press the part against every locator.
 
 First gravity acts alone, then each clamp closes in the order of the file, with those before it. At every step there
-must be a balance, or the part leaves the locators that the motion of the proof leaves. A locator is pressed at a step if
-its normal force is more than zero in all balances there are. It counts as pressed from then on, as long as some balance
-has it pressed: a clamp that closes later adds friction that could take its force over, but nothing that makes it do so.
-Supports come up later and have no part in it.
+must be a balance, or the part leaves the locators that the motion of the proof leaves. A locator is pressed at a step
+if its normal force is more than zero in all balances there are. It counts as pressed from then on, as long as some
+balance has it pressed: a clamp that closes later adds friction that could take its force over, but nothing that makes
+it do so. Supports come up later and have no part in it.
 """
 
 from __future__ import annotations

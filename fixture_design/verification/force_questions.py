@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from fixture_design.analysis.acting import LoadRow, gravity_wrench, preloads_of
+from fixture_design.analysis.acting import LoadRow, preloads_of
 from fixture_design.analysis.contact_forces import contact_forces
 from fixture_design.analysis.holding import held_loads
 from fixture_design.analysis.preloads import least_preloads
@@ -24,10 +25,12 @@ from fixture_design.layout import (
     LoadsHeld,
     LoadVerdict,
     element_name,
+    severity,
 )
 from fixture_design.tolerances import ROUND_OFF, Tolerances
 from fixture_design.verification.found import FoundContacts
 from fixture_design.verification.load_paths import load_rows
+from fixture_design.verification.weight import weight_of
 
 #: Loads named in one reason before it says "and so many more".
 _LOADS_SHOWN = 3
@@ -40,12 +43,12 @@ def holds_loads(layout: Layout, group: Group, found: FoundContacts, tolerances: 
         FileFormatError: a load path cannot be read.
     """
     rows = load_rows(layout, group)
-    weight = gravity_wrench(layout, group)
+    weight = acting_weight(layout, group, found)
     if isinstance(weight, str):
         return Finding(Answer.UNDECIDED, reason=weight)
     preloads = preloads_of(layout, group.contacts)
     verdicts = held_loads(group.contacts, preloads, weight, rows, tolerances)
-    worst = min(range(len(rows)), key=lambda index: _rank(verdicts[index]))
+    worst = min(range(len(rows)), key=lambda index: severity(verdicts[index]))
     use = LoadsHeld(
         verdicts,
         worst,
@@ -58,10 +61,10 @@ def holds_loads(layout: Layout, group: Group, found: FoundContacts, tolerances: 
     return Finding(verdicts[worst].answer, residual=max(residuals, default=None), reason=_reason(verdicts), use=use)
 
 
-def _rank(verdict: LoadVerdict) -> tuple[int, float]:
-    """First loads that are not held, then open ones, then by reserve."""
-    order = (Answer.NO, Answer.UNDECIDED, Answer.YES)
-    return order.index(verdict.answer), -1.0 if verdict.reserve is None else verdict.reserve[0]
+def acting_weight(layout: Layout, group: Group, found: FoundContacts) -> Vector | str:
+    """The weight as a wrench about W's origin, zero where gravity does not act on the group; or why it is not known."""
+    weight = weight_of(layout if group.gravity else replace(layout, gravity=None), found)
+    return weight if isinstance(weight, str) else weight.wrench
 
 
 def _reason(verdicts: Sequence[LoadVerdict]) -> str | None:
@@ -112,7 +115,7 @@ def determinate(contacts: Sequence[Contact], preloads: Mapping[str, float], tole
 
 def seated(layout: Layout, group: Group, found: FoundContacts, tolerances: Tolerances) -> Finding:
     """Whether gravity, then the group's clamps one after the other press the part against every locator."""
-    weight = gravity_wrench(layout, group)
+    weight = acting_weight(layout, group, found)
     if isinstance(weight, str):
         return Finding(Answer.UNDECIDED, reason=weight)
     preloads = preloads_of(layout, group.contacts)

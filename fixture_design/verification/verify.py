@@ -41,7 +41,8 @@ from fixture_design.tolerances import DEFAULT, Tolerances
 from fixture_design.verification.checker import sum_up
 from fixture_design.verification.found import FoundContacts
 from fixture_design.verification.linked import bracketed
-from fixture_design.verification.use import USE_QUESTIONS, with_use
+from fixture_design.verification.use import with_use
+from fixture_design.verification.weight import weight_notes
 from fixture_design.version import VERSION
 
 #: The questions this version answers about every group, in the order they are reported.
@@ -68,6 +69,7 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
     groups = groups_of(layout, found.contacts)
     verdicts = group_verdicts(groups, found.report, notes, tolerances)
     verdicts = {group.name: with_use(verdicts[group.name], layout, group, found, tolerances) for group in groups}
+    notes += weight_notes(layout, groups, found)
     requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
     return Verdict(
         name=layout.name,
@@ -201,9 +203,6 @@ def _requirement_verdicts(
             if not group.contacts:
                 notes.append(f"{group.name}: {require} is required of a group without contacts: not satisfied")
                 found.append(RequirementVerdict(group.name, require, None))
-            elif require in QUESTIONS or require in USE_QUESTIONS:
-                found.append(RequirementVerdict(group.name, require, verdicts[group.name].findings[require].answer))
             else:
-                notes.append(f"{group.name}: {require} is not evaluated by version {VERSION}: undecided")
-                found.append(RequirementVerdict(group.name, require, Answer.UNDECIDED))
+                found.append(RequirementVerdict(group.name, require, verdicts[group.name].findings[require].answer))
     return found

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fixture_design.arrays import Point, Vector
+from fixture_design.contacts import cross
 from fixture_design.errors import looking_at
-from fixture_design.layout import Layout
+from fixture_design.layout import Group, Layout
 from fixture_design.verification.found import FoundContacts
 
 
@@ -23,7 +25,7 @@ class Weight:
     @property
     def wrench(self) -> Vector:
         """[f; m] about W's origin [N, N m]."""
-        return np.append(self.force, np.atleast_1d(np.cross(self.center, self.force)))
+        return np.append(self.force, cross(self.center[None], self.force[None])[0])
 
 
 def weight_of(layout: Layout, found: FoundContacts) -> Weight | str:
@@ -37,11 +39,24 @@ def weight_of(layout: Layout, found: FoundContacts) -> Weight | str:
         return Weight(zero, zero)
     if layout.part is None:
         return "gravity is given, but no part with a mass"
-    from fixture_design.geometry import load_geometry, mass_of  # noqa: PLC0415 - only where gravity acts
+    mass, center, note = layout.part.mass, layout.part.center, None
+    if mass is None or center is None:
+        from fixture_design.geometry import load_geometry, mass_of  # noqa: PLC0415 - only where the file must tell
 
-    with looking_at(layout.source, layout.places.get(("part",))):
-        mass = mass_of(layout.part, found.geometry or load_geometry(layout.part))
-    if mass is None:
-        return f"gravity is given, but nothing says how heavy {layout.part.name} is (`mass` of the part)"
-    center = layout.part.pose.points(mass.center[None])[0]
-    return Weight(mass.mass * np.asarray(layout.gravity), center, mass.note)
+        with looking_at(layout.source, layout.places.get(("part",))):
+            told = mass_of(layout.part, found.geometry or load_geometry(layout.part))
+        if told is None:
+            return f"gravity is given, but nothing says how heavy {layout.part.name} is (`mass` of the part)"
+        mass, center, note = told.mass, told.center, told.note
+    return Weight(mass * np.asarray(layout.gravity), layout.part.pose.points(np.asarray(center)[None])[0], note)
+
+
+#: Requirements that ask what gravity does.
+_ABOUT_FORCES = ("seated", "holds_loads")
+
+
+def weight_notes(layout: Layout, groups: Sequence[Group], found: FoundContacts) -> list[str]:
+    """What was assumed about the weight, where a requirement asks about forces."""
+    asked = any(group.gravity and group.contacts and {*group.require} & {*_ABOUT_FORCES} for group in groups)
+    weight = weight_of(layout, found) if asked else None
+    return [weight.note] if isinstance(weight, Weight) and weight.note is not None else []

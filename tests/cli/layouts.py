@@ -12,7 +12,7 @@ contacts:
 NOTHING_REQUIRED = LOCATORS
 HOLDS = LOCATORS + "require: {locators: [deterministic, strongly_accessible]}\n"
 FAILS = LOCATORS + "require: {all: [form_closure]}\n"
-UNDECIDED = LOCATORS + "require: {locators: [seated]}\n"
+UNDECIDED = LOCATORS + "require: {locators: [accurate]}\n"
 BAD = LOCATORS + "require: {all: [form_closur]}\n"
 
 #: A tetrahedron of a metre, and one without its last face.

@@ -36,10 +36,10 @@ def test_one_layout(command: Callable, tmp_path: Path, name: str) -> None:
     assert command("verify", "--json", tmp_path / f"{name}.yaml").code == code
 
 
-def test_what_is_not_evaluated_is_named(command: Callable, tmp_path: Path) -> None:
+def test_why_it_is_undecided_is_said(command: Callable, tmp_path: Path) -> None:
     ran = command("verify", written(tmp_path, "x", UNDECIDED))
-    assert "required of locators: seated: undecided" in ran.out
-    assert "note: locators: seated is not evaluated" in ran.out
+    assert "required of locators: accurate: undecided" in ran.out
+    assert "key_features" in ran.out
 
 
 @pytest.mark.parametrize(

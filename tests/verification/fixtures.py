@@ -204,7 +204,7 @@ def _loose(data: Data, plate: Plate) -> None:
 
 def _rough_rest(data: Data, plate: Plate) -> None:
     """A rest that is known to a millimetre, under the bore."""
-    x, y, _ = plate.size
+    x = plate.size[0]
     element(data, "L2")["tolerance"] = 1e-3
     data["key_features"] = [{"name": "bore", "point": [x, 0, 0], "direction": [0, 0, 1], "tolerance": 5e-5}]
 

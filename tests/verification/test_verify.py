@@ -1,4 +1,4 @@
-"""The pipeline: groups, stages, requirements, notes, and what is not evaluated yet."""
+"""The pipeline: groups, stages, requirements, and notes."""
 
 from dataclasses import replace
 
@@ -47,11 +47,11 @@ def test_one_requirement_that_fails() -> None:
     assert verdict.satisfied is Answer.NO
 
 
-def test_what_is_not_evaluated_is_undecided_and_named() -> None:
+def test_what_is_undecided_says_why() -> None:
     verdict = verify(layout(require={"locators": ("seated",)}))
     assert verdict.requirements[0].answer is Answer.UNDECIDED
     assert verdict.satisfied is Answer.UNDECIDED
-    assert any("seated" in note for note in verdict.notes)
+    assert "nothing presses" in (verdict.groups["locators"].findings["seated"].reason or "")
 
 
 def test_an_empty_group_has_no_answers_and_satisfies_nothing() -> None:
