@@ -7,7 +7,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from fixture_design.cli.messages import printable
-from fixture_design.layout import Answer, GroupVerdict, Verdict
+from fixture_design.layout import USE_CLAIMS, Answer, GroupVerdict, Verdict
 from fixture_design.viewing.words import evidence_in_words
 
 _STYLE = {Answer.YES: "green", Answer.NO: "red", Answer.UNDECIDED: "yellow", None: "dim"}
@@ -21,7 +21,10 @@ _PAPER_WIDTH = 120
 
 
 def print_verdict(verdict: Verdict, console: Console | None = None) -> None:
-    """Print one verdict; a group that has another one's contacts refers to it instead of repeating it."""
+    """Print one verdict; a group that has another one's contacts refers to it instead of repeating it.
+
+    What the fixture does to the part depends on gravity and loads too, and is said of each group.
+    """
     console = console or _console()
     with console.capture() as printed:  # rich would end the process on a broken pipe, with the code of a failure
         _print(verdict, console)
@@ -61,8 +64,10 @@ def _add_group(table: Table, group: GroupVerdict, same: str | None, verdict: Ver
     names = ", ".join(group.contacts) or "no contacts"
     said = f"as {same}" if same else names
     table.add_row(f"[bold]{escape(group.name)}[/]", "", "", f"[dim]{escape(said)}[/]")
-    if same is None and group.contacts:
+    if group.contacts:
         for claim, finding in group.findings.items():
+            if same is not None and claim not in USE_CLAIMS:
+                continue
             margin = "" if finding.margin is None else f"{finding.margin + 0.0:.3g}"
             answer = f"[{_STYLE[finding.answer]}]{finding.answer}[/]"
             evidence = escape(evidence_in_words(claim, finding, verdict.reference, verdict.length))

@@ -37,6 +37,7 @@ from fixture_design.layout.use import (
     severity,
 )
 from fixture_design.layout.verdict import (
+    USE_CLAIMS,
     Counted,
     Evidence,
     Finding,
@@ -52,6 +53,7 @@ from fixture_design.layout.verdict import (
 )
 
 __all__ = [
+    "USE_CLAIMS",
     "Answer",
     "Balance",
     "Body",

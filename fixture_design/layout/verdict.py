@@ -93,6 +93,8 @@ class Singular:
 
 
 Evidence = Motion | Singular | tuple[Weights, ...]
+#: Claims about what the fixture does to the part: they depend on gravity, loads and clamps, not on contacts alone.
+USE_CLAIMS: tuple[Requirement, ...] = ("loadable", "accurate", "seated", "holds_loads")
 UseEvidence = LocatingErrors | LoadsHeld | Seating | StraightWays
 
 

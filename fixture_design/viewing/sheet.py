@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fixture_design.errors import format_length
-from fixture_design.layout import Layout, Verdict
+from fixture_design.layout import USE_CLAIMS, Layout, Verdict
 from fixture_design.viewing.markup import Markup, answer_cell, bullets, table, tag
 from fixture_design.viewing.words import evidence_in_words
 
@@ -30,6 +30,8 @@ def questions(verdict: Verdict) -> Markup:
         who = ", ".join(group.contacts) or "no contacts"
         rows.append([tag("b", group.name), "", "", who if first == group.name else f"contacts as {first}: {who}"])
         for claim, finding in group.findings.items():
+            if first != group.name and claim not in USE_CLAIMS:
+                continue
             margin = "" if finding.margin is None else f"{finding.margin + 0.0:.3g}"
             words = evidence_in_words(claim, finding, verdict.reference, verdict.length)
             rows.append([_spaced(claim), answer_cell(finding.answer), margin, words])
