@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.analysis.contact_forces import ForceCones
 from fixture_design.arrays import Weights
+from fixture_design.cones.force_cones import ForceCones
 from fixture_design.tolerances import CARRIES, SUM_ROUNDING, WITNESS, ZERO_ROW
 
 #: Steps of a correction; each squares the error.

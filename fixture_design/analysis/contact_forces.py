@@ -15,42 +15,14 @@ from itertools import islice, product
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Points, Vector, Weights
+from fixture_design.arrays import Points, Vector, Weights
+from fixture_design.cones.force_cones import ForceCones
 from fixture_design.contacts import Contact, Scale, cross, scale_of, tangents, unit_normal
 from fixture_design.layout import ContactForce, element_name
 from fixture_design.tolerances import MOST_FRICTION
 
 #: For each clause of a branch that has alternatives: (contact, clause, alternative).
 Choice = tuple[tuple[str, int, int], ...]
-
-
-@dataclass(frozen=True, eq=False)
-class ForceCones:
-    """Second-order cones and what they add to a sum: x_i = [t, z], |z| <= t, gives maps_i @ x_i.
-
-    Attributes:
-        maps: shape (d, s), columns cone after cone.  sizes: shape (n,), of 1 or more.
-        heads: shape (n,), NaN where t is free, else what t is.
-    """
-
-    maps: np.ndarray
-    sizes: Indices
-    heads: Weights
-
-    @property
-    def starts(self) -> Indices:
-        """Where each cone's columns start, shape (n,)."""
-        return np.cumsum(self.sizes) - self.sizes
-
-    def blocks(self) -> list[slice]:
-        """The columns of each cone."""
-        return [slice(start, start + size) for start, size in zip(self.starts, self.sizes, strict=True)]
-
-    @property
-    def passive(self) -> ForceCones:
-        """Those whose t is free: what they can do is a cone."""
-        free = np.isnan(self.heads)
-        return ForceCones(self.maps[:, np.repeat(free, self.sizes)], self.sizes[free], self.heads[free])
 
 
 @dataclass(frozen=True, eq=False)

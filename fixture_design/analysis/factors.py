@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.analysis import loads as one_at_a_time
-from fixture_design.analysis.contact_forces import ForceCones
 from fixture_design.arrays import Mask, Rows, Vector, Weights
 from fixture_design.cones import second_order
+from fixture_design.cones.force_cones import ForceCones
 from fixture_design.tolerances import SOLVED
 
 
@@ -68,8 +68,7 @@ def factor_table(cones: ForceCones, fixed: Vector, loads: Rows) -> FactorTable:
         fixed: shape (d,).  loads: shape (k, d), none of them zero.
     """
     both = np.vstack([loads, -loads])
-    kernel = second_order.ForceCones(cones.maps, cones.sizes, cones.heads)
-    found = second_order.largest_factors(kernel, fixed, both)
+    found = second_order.largest_factors(cones, fixed, both)
     table = FactorTable(*(np.array(a) for a in (found.lower, found.upper, found.forces, found.starts, found.motions)))
     for index in np.flatnonzero(_open(table)).tolist():
         _replace(table, index, one_at_a_time.largest_factors(cones, fixed, both[index : index + 1]))

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from fixture_design.analysis.balances import repaired_forces, repaired_motion, surplus
-from fixture_design.analysis.contact_forces import ForceCones
 from fixture_design.arrays import Weights
+from fixture_design.cones.force_cones import ForceCones
 from fixture_design.tolerances import CARRIES, SOLVED, WITNESS
 
 #: What Clarabel is asked for [-]; it stops sooner where it gets no further.

@@ -13,10 +13,11 @@ import numpy as np
 
 from fixture_design.analysis.acting import LoadRow
 from fixture_design.analysis.balancing import ForceBranch, branches_of, settle
-from fixture_design.analysis.contact_forces import ContactForces, ForceCones, contact_forces
+from fixture_design.analysis.contact_forces import ContactForces, contact_forces
 from fixture_design.analysis.holding import held_loads
 from fixture_design.analysis.loads import solve_cones
 from fixture_design.arrays import Vector, Weights
+from fixture_design.cones.force_cones import ForceCones
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, element_name
 from fixture_design.tolerances import LOAD_TIE, SOLVED, Tolerances

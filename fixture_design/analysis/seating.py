@@ -23,9 +23,10 @@ from fixture_design.analysis.balancing import (
     most_resistance,
     settle,
 )
-from fixture_design.analysis.contact_forces import ContactForces, ForceCones
+from fixture_design.analysis.contact_forces import ContactForces
 from fixture_design.analysis.loads import largest_factors
 from fixture_design.arrays import Vector, Weights
+from fixture_design.cones.force_cones import ForceCones
 from fixture_design.contacts import Contact, motion_about_origin, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Finding, Seating, SeatingStep, Unbalanced, element_name
 from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, Tolerances

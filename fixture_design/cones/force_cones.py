@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from fixture_design.arrays import Indices, Weights
 from fixture_design.errors import ConeError
 
-#: Cones have as many numbers at most: a normal force, two of friction, a moment of friction about the normal.
+#: What contacts have at most: a normal force, two of friction, a moment of friction about the normal.
 WIDEST = 4
 
 
@@ -21,7 +21,7 @@ class ForceCones:
     Attributes:
         maps: shape (d, s), the columns of one cone after those of another. Scaling a cone's column of z by mu makes
             its friction coefficient mu.
-        sizes: shape (n,), the numbers k_i of each cone, 1 to 4; they sum to s.
+        sizes: shape (n,), the numbers k_i >= 1 of each cone; they sum to s.
         heads: shape (n,), NaN where t is free; else t is just that, as of a clamp that pushes with a given force >= 0.
 
     Raises:
@@ -35,8 +35,8 @@ class ForceCones:
     def __post_init__(self) -> None:
         if self.maps.ndim != 2 or self.sizes.shape != self.heads.shape or self.sizes.sum() != self.maps.shape[1]:
             raise ConeError(f"maps {self.maps.shape}, sizes {self.sizes.tolist()}, {len(self.heads)} heads do not fit")
-        if len(self.sizes) and not (self.sizes.min() >= 1 and self.sizes.max() <= WIDEST):
-            raise ConeError(f"cones have 1 to {WIDEST} numbers, not {self.sizes.tolist()}")
+        if len(self.sizes) and self.sizes.min() < 1:
+            raise ConeError(f"cones have 1 number or more, not {self.sizes.tolist()}")
         if not np.isfinite(self.maps).all():
             raise ConeError("maps must be finite")
         if not (np.isnan(self.heads) | ((self.heads >= 0) & np.isfinite(self.heads))).all():
@@ -47,9 +47,19 @@ class ForceCones:
         """The first column of each cone."""
         return np.cumsum(self.sizes) - self.sizes
 
+    def blocks(self) -> list[slice]:
+        """The columns of each cone."""
+        return [slice(start, start + size) for start, size in zip(self.starts, self.sizes, strict=True)]
+
+    @property
+    def passive(self) -> ForceCones:
+        """Those whose t is free: what they can do is a cone."""
+        free = np.isnan(self.heads)
+        return ForceCones(self.maps[:, np.repeat(free, self.sizes)], self.sizes[free], self.heads[free])
+
     @property
     def places(self) -> Int[np.ndarray, "n 4"]:
-        """The column of each number of each cone; s, one beyond the last, for numbers that it has not."""
+        """The column of each number of each cone, of `WIDEST` at most; s, one beyond the last, where it has fewer."""
         numbers = np.arange(WIDEST)
         return np.where(numbers < self.sizes[:, None], self.starts[:, None] + numbers, self.maps.shape[1])
 

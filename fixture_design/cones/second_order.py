@@ -18,7 +18,7 @@ import numpy as np
 from fixture_design.arrays import Rows, Vector
 from fixture_design.cones.balance_proof import proved
 from fixture_design.cones.balance_space import BalanceSpace
-from fixture_design.cones.force_cones import Factors, ForceCones
+from fixture_design.cones.force_cones import WIDEST, Factors, ForceCones
 from fixture_design.errors import ConeError
 
 __all__ = ["Factors", "ForceCones", "largest_factors"]
@@ -42,6 +42,8 @@ def largest_factors(cones: ForceCones, fixed: Vector, loads: Rows, *, threads: i
     d = cones.maps.shape[0]
     if fixed.shape != (d,) or loads.ndim != 2 or loads.shape[1] != d:
         raise ConeError(f"a fixed wrench {fixed.shape} and loads {loads.shape} for maps in R^{d}")
+    if cones.sizes.max(initial=1) > WIDEST:
+        raise ConeError(f"cones have 1 to {WIDEST} numbers, not {cones.sizes.tolist()}")
     if not (np.isfinite(fixed).all() and np.isfinite(loads).all()):
         raise ConeError("the fixed wrench and the loads must be finite")
     return proved(BalanceSpace.of(cones, fixed, threads), loads)

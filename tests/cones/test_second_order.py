@@ -227,7 +227,7 @@ def test_what_does_not_fit_is_said():
     with pytest.raises(ConeError):
         ForceCones(maps * np.nan, np.array([3]), free)
     with pytest.raises(ConeError):
-        ForceCones(np.eye(6)[:, :5], np.array([5]), free)
+        largest_factors(ForceCones(np.eye(6)[:, :5], np.array([5]), free), np.zeros(6), np.eye(6))
     cones = ForceCones(maps, np.array([3]), free)
     for fixed, loads in ((np.zeros(3), np.eye(3)), (np.full(6, np.inf), np.eye(6))):
         with pytest.raises(ConeError):
