@@ -8,11 +8,13 @@ from math import isinf
 import numpy as np
 
 from fixture_design.layout import (
+    Answer,
     Balance,
     LoadsHeld,
     LoadVerdict,
     LocatingErrors,
     Seating,
+    SeatingStep,
     Unbalanced,
     UseEvidence,
     Verdict,
@@ -62,14 +64,19 @@ def forces(verdict: Verdict) -> Markup | None:
     parts: list[Markup] = []
     for group, use in used(verdict):
         if isinstance(use, Seating):
-            rows = [
-                [step.clamp or "gravity alone", answer_cell(step.answer), _reactions(step.reactions), step.cause or ""]
-                for step in use.steps
-            ]
-            parts += [tag("h3", f"{group}: seating"), table(["closed", "seated", "reactions [N]", ""], rows)]
+            rows = [[step.clamp or "gravity alone", _pressed(step), _reactions(step.reactions)] for step in use.steps]
+            headings = ["closed", "pressed for certain", "reactions [N]"]
+            parts += [tag("h3", f"{group}: seating"), table(headings, rows)]
         if isinstance(use, LoadsHeld):
             parts += [tag("h3", f"{group}: loads"), _load_table(use), _certificates(use, verdict)]
     return joined(parts) if parts else None
+
+
+def _pressed(step: SeatingStep) -> str:
+    """The locators that are pressed in every balance; where there is none, who unseats the part."""
+    if step.answer is Answer.NO:
+        return step.cause or "the part is unseated"
+    return ", ".join(step.presses) or "none"
 
 
 def _load_table(use: LoadsHeld) -> Markup:
