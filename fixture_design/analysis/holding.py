@@ -78,7 +78,7 @@ def _held(
         ranges = [found for branch, found in zip(branches, ranges, strict=True) if branch is settled.branch]
     needed = max(0.0, next(filter(np.isfinite, best.needed[::-1]), 0.0))
     answer, reason = _answer(settled, ranges)
-    verdict = LoadVerdict(row.load, row.row, answer, reserve, needed, None, best.first, reason)
+    verdict = LoadVerdict(row.load, row.row, row.wrench, answer, reserve, needed, None, best.first, reason)
     return _with_proof(verdict, settled)
 
 
@@ -93,10 +93,12 @@ def _with_proof(verdict: LoadVerdict, settled: Settled) -> LoadVerdict:
 def _without_load(row: LoadRow, settled: Settled) -> LoadVerdict:
     """A load of nothing: any factor on it is the same."""
     if settled.balance is not None:
-        return LoadVerdict(row.load, row.row, Answer.YES, (np.inf, np.inf), 0.0, settled.balance)
+        return LoadVerdict(row.load, row.row, row.wrench, Answer.YES, (np.inf, np.inf), 0.0, settled.balance)
     answer = Answer.UNDECIDED if settled.reason else Answer.NO
     reserve = (0.0, np.inf) if settled.reason else None
-    return _with_proof(LoadVerdict(row.load, row.row, answer, reserve, 0.0, None, (), settled.reason), settled)
+    return _with_proof(
+        LoadVerdict(row.load, row.row, row.wrench, answer, reserve, 0.0, None, (), settled.reason), settled
+    )
 
 
 def _answer(settled: Settled, ranges: Sequence[FactorRange]) -> tuple[Answer, str | None]:

@@ -12,15 +12,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fixture_design.analysis.acting import LoadRow
-from fixture_design.analysis.balancing import ForceBranch, branches_of, settle
+from fixture_design.analysis.balancing import ForceBranch, branches_of
 from fixture_design.analysis.contact_forces import ContactForces, contact_forces
-from fixture_design.analysis.holding import held_loads
+from fixture_design.analysis.holding import factor_ranges, held_loads
 from fixture_design.analysis.loads import solve_cones
 from fixture_design.arrays import Vector, Weights
 from fixture_design.cones.force_cones import ForceCones
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, element_name
-from fixture_design.tolerances import LOAD_TIE, SOLVED, Tolerances
+from fixture_design.tolerances import LOAD_TIE, SOLVED, ZERO_ROW, Tolerances
 
 #: How much further than they go the loads are taken, one after the other until the preloads found are verified [-].
 MARGINS = (1e-4, 1e-3, 1e-2)
@@ -87,13 +87,15 @@ def _worst(
     tolerances: Tolerances,
 ) -> int | None:
     """The row that is furthest from a balance; None if all have one."""
-    branches, complete = branches_of(contacts, preloads, tolerances)
-    failing: dict[int, float] = {}
-    for index, row in enumerate(rows):
-        settled = settle(branches, complete, constant + row.wrench, tolerances)
-        if settled.balance is None:
-            failing[index] = max((motion.surplus for motion in settled.against), default=0.0)
-    return max(failing, key=lambda index: failing[index]) if failing else None
+    branches, _ = branches_of(contacts, preloads, tolerances)
+    acting = [index for index, row in enumerate(rows) if np.abs(row.wrench).max() > ZERO_ROW]
+    wrenches = np.array([rows[index].wrench for index in acting]).reshape(-1, len(constant))
+    ranges = factor_ranges(branches[0], constant, wrenches)
+    # how far 1 is beyond the factors that are held, as a part of the load
+    beyond = [max(1 - found.reserve[0], found.needed[1] - 1) for found in ranges]
+    if not beyond or max(beyond) <= 0:
+        return None
+    return acting[int(np.argmax(beyond))]
 
 
 def _program(

@@ -3,14 +3,14 @@
 First gravity acts alone, then each clamp closes in the order of the file, with those before it. At every step there
 must be a balance, or the part leaves the locators that the motion of the proof leaves. A locator is pressed at a step
 if its normal force is more than zero in all balances there are. It counts as pressed from then on, as long as some
-balance has it pressed: a clamp that closes later adds friction that could take its force over, but nothing that makes
-it do so. Supports come up later and have no part in it.
+balance has it pressed; and in the end it must be pressed without friction too, or only friction would keep the part
+from lifting off. Supports come up later and have no part in it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -59,8 +59,17 @@ def seating(
         steps.append(_step(contacts, preloads, clamp, weight, locators, tuple(before), tolerances))
         if steps[-1].answer is Answer.NO:
             break
-    answer, reason = _summed_up(steps)
-    return Finding(answer, reason=reason, use=Seating(tuple(steps), dict(preloads)))
+    last = steps[-1]
+    smooth = last
+    if last.answer is not Answer.NO and any(contact.friction for contact in contacts):
+        smooth = _step(without_friction(contacts), preloads, last.clamp, weight, locators, (), tolerances)
+    answer, reason = _summed_up(steps, smooth)
+    return Finding(answer, reason=reason, use=Seating(tuple(steps), dict(preloads), weight, smooth))
+
+
+def without_friction(contacts: Sequence[Contact]) -> list[Contact]:
+    """The same contacts, which only push along their normals."""
+    return [replace(contact, friction=0.0, torsion=0.0) for contact in contacts]
 
 
 def closed_at(contacts: Sequence[Contact], preloads: Mapping[str, float], clamp: str | None) -> list[Contact]:
@@ -70,19 +79,22 @@ def closed_at(contacts: Sequence[Contact], preloads: Mapping[str, float], clamp:
     return [c for c in contacts if c.role != "support" and (c.role != "clamp" or element_name(c.name) in closed)]
 
 
-def _summed_up(steps: Sequence[SeatingStep]) -> tuple[Answer, str | None]:
+def _summed_up(steps: Sequence[SeatingStep], smooth: SeatingStep) -> tuple[Answer, str | None]:
     last = steps[-1]
     if last.answer is Answer.NO:
         return Answer.NO, None
     if unproven := next((step for step in steps if step.proof is None), None):
         return Answer.UNDECIDED, f"{_when(unproven)}: {unproven.cause}"
     pressed = {name for step in steps for name in step.presses}
-    if not last.idle and pressed >= set(last.reactions):
+    if pressed >= set(last.reactions) and smooth.answer is Answer.YES:
         return Answer.YES, None
     if last.idle:
         return Answer.UNDECIDED, f"nothing presses the part against {', '.join(last.idle)}"
     never = [name for name in last.reactions if name not in pressed]
-    return Answer.UNDECIDED, f"friction leaves open whether the part is pressed against {', '.join(never)}"
+    if never:
+        return Answer.UNDECIDED, f"friction leaves open whether the part is pressed against {', '.join(never)}"
+    loose = smooth.lifted or smooth.idle
+    return Answer.UNDECIDED, f"only friction keeps the part on {', '.join(loose)}" if loose else smooth.cause
 
 
 def _when(step: SeatingStep) -> str:

@@ -14,14 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Point, Points, cross_products
-from fixture_design.contacts import Contact, tangents, unit_normal
+from fixture_design.contacts import Contact, Role, tangents, unit_normal
 from fixture_design.geometry.bodies import placed_geometry
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.shapes import Corners, Triangles, Vector3
 from fixture_design.layout import Element, Layout, LineTip, PadTip, PinTip, Pose, SphereTip, element_name
 
-#: Roles of what is in its place while the part is loaded; clamps and supports are away.
-STANDING = ("locator", "finger")
+#: Roles of what is in its place while the part is loaded.
+STANDING: tuple[Role, ...] = ("locator", "finger")
 
 #: Thickness of pads and lines in surface gaps [-].
 _THICK = 6.0
@@ -79,8 +79,14 @@ class SolidBarrier:
 Barrier = PointBarrier | BallBarrier | SolidBarrier
 
 
-def barriers_of(layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact], gap: float) -> tuple[Barrier, ...]:
-    """Everything of a spatial layout that stands while its part is loaded, in P.
+def barriers_of(
+    layout: Layout,
+    geometry: PartGeometry,
+    contacts: Sequence[Contact],
+    gap: float,
+    roles: Sequence[Role] = STANDING,
+) -> tuple[Barrier, ...]:
+    """Everything of a spatial layout that has one of these roles, in P.
 
     Args:
         geometry: of the part.  contacts: all that the layout has, in W.
@@ -94,12 +100,12 @@ def barriers_of(layout: Layout, geometry: PartGeometry, contacts: Sequence[Conta
     X_WP, found = layout.part.pose, list[Barrier]()
     for element in layout.elements:
         mine = [contact for contact in contacts if element_name(contact.name) == element.name]
-        if element.role in STANDING and mine:
+        if element.role in roles and mine:
             found.append(_of_element(element, mine, geometry, X_WP, gap))
     found += [_of_point(contact.name, contact, geometry, X_WP) for contact in layout.contacts
-              if contact.role in STANDING]  # fmt: skip
+              if contact.role in roles]  # fmt: skip
     for body in layout.bodies:
-        if body.role in STANDING:
+        if body.role in roles:
             placed = placed_geometry(body, X_WP)
             found.append(SolidBarrier(body.name, placed.vertices[placed.triangles], None, placed))
     return tuple(found)

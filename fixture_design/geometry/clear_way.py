@@ -8,15 +8,15 @@ seen. The way has no end: out is out of the fixture altogether.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from fixture_design.arrays import Point
-from fixture_design.contacts import Contact
-from fixture_design.geometry.barriers import BallBarrier, Barrier, PointBarrier, SolidBarrier, barriers_of
+from fixture_design.contacts import Contact, Role
+from fixture_design.geometry.barriers import STANDING, BallBarrier, Barrier, PointBarrier, SolidBarrier, barriers_of
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.segments import Segments, segment_distances
 from fixture_design.geometry.separation import Solid, separation
@@ -57,11 +57,13 @@ class Surroundings:
     gap: float
 
     @classmethod
-    def of(cls, layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact]) -> Surroundings:
+    def of(
+        cls, layout: Layout, geometry: PartGeometry, contacts: Sequence[Contact], roles: Sequence[Role] = STANDING
+    ) -> Surroundings:
         """See `barriers_of`; a surface gap of zero is what the part's edges are known to."""
         pose = Pose.identity(3) if layout.part is None else layout.part.pose
         gap = max(layout.surface_gap, geometry.on_edge)
-        return cls(geometry, barriers_of(layout, geometry, contacts, gap), pose, gap)
+        return cls(geometry, barriers_of(layout, geometry, contacts, gap, roles), pose, gap)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -82,13 +84,20 @@ class Surroundings:
         Raises:
             GeometryError: the geometry engine has no answer.
         """
+        found = self._meetings(direction)
+        return next(found, None) if any_one else first_of(list(found))
+
+    def met(self, direction: Point) -> tuple[str, ...]:
+        """The names of all that is in the way along a unit direction in W."""
+        return tuple(meeting.obstacle.name for meeting in self._meetings(direction))
+
+    def _meetings(self, direction: Point) -> Iterator[Meeting]:
         frame = Frame.along(self._in_part(direction))
         corners = frame.seen(self._corners)
         part = Faces.facing(corners, False)
         quick_first = sorted(self.barriers, key=lambda barrier: isinstance(barrier, SolidBarrier))
         meetings = (self._with(barrier, frame, corners, part) for barrier in quick_first)
-        found = (meeting for meeting in meetings if meeting is not None)
-        return next(found, None) if any_one else first_of(list(found))
+        return (meeting for meeting in meetings if meeting is not None)
 
     def _with(self, barrier: Barrier, frame: Frame, corners: Triples, part: Faces) -> Meeting | None:
         match barrier:

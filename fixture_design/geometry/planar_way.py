@@ -6,7 +6,7 @@ ball likewise by its radius; a pad or line, which in the plane is a stretch of t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fixture_design.arrays import Point, Points
-from fixture_design.contacts import Contact, unit_normal
+from fixture_design.contacts import Contact, Role, unit_normal
 from fixture_design.geometry.barriers import STANDING
 from fixture_design.geometry.clear_way import Meeting, first_of
 from fixture_design.geometry.polygon import Polygon
@@ -55,16 +55,18 @@ class PlanarSurroundings:
     gap: float
 
     @classmethod
-    def of(cls, layout: Layout, polygon: Polygon, contacts: Sequence[Contact]) -> PlanarSurroundings:
-        """Elements and contacts given outright that stand while the part is loaded; ``contacts``: all, in W."""
+    def of(
+        cls, layout: Layout, polygon: Polygon, contacts: Sequence[Contact], roles: Sequence[Role] = STANDING
+    ) -> PlanarSurroundings:
+        """Elements and contacts given outright that have one of these roles; ``contacts``: all, in W."""
         pose = Pose.identity(2) if layout.part is None else layout.part.pose
         found = []
         for element in layout.elements:
             mine = [contact for contact in contacts if element_name(contact.name) == element.name]
-            if element.role in STANDING and mine:
+            if element.role in roles and mine:
                 found.append(_of_element(element, mine, polygon, pose))
         for contact in layout.contacts:
-            if contact.role in STANDING:
+            if contact.role in roles:
                 point = pose.inverse().points(contact.point[None])
                 found.append(replace(_barrier(contact.name, point, 0.0, polygon), measured=False))
         return cls(polygon, tuple(found), pose, max(layout.surface_gap, polygon.precision))
@@ -81,10 +83,17 @@ class PlanarSurroundings:
 
     def meeting(self, direction: Point, any_one: bool = False) -> Meeting | None:
         """What is first in the way along a unit direction in W, or ``any_one``; see `clear_way.Surroundings`."""
+        found = self._meetings(direction)
+        return next(found, None) if any_one else first_of(list(found))
+
+    def met(self, direction: Point) -> tuple[str, ...]:
+        """The names of all that is in the way along a unit direction in W."""
+        return tuple(meeting.obstacle.name for meeting in self._meetings(direction))
+
+    def _meetings(self, direction: Point) -> Iterator[Meeting]:
         t = self._in_part(direction)
         meetings = (self._with(barrier, t, direction) for barrier in self.barriers)
-        found = (meeting for meeting in meetings if meeting is not None)
-        return next(found, None) if any_one else first_of(list(found))
+        return (meeting for meeting in meetings if meeting is not None)
 
     def _with(self, barrier: PlanarBarrier, t: Point, direction: Point) -> Meeting | None:
         import shapely

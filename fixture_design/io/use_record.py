@@ -170,6 +170,7 @@ def _ways(evidence: StraightWays) -> Data:
         "slides": list(evidence.slides),
         "length": plain_numbers(evidence.length),
         "against": list(evidence.against),
+        "aside": list(evidence.aside),
         "obstacle": None if evidence.obstacle is None else _obstacle(evidence.obstacle),
         "weights": None if weights is None else _weights(weights),
     }

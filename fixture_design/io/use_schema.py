@@ -122,6 +122,7 @@ class WaysRecord(Record):
     slides: list[str]
     length: Number | None = Field(description="of the way looked at [m]")
     against: list[str]
+    aside: list[str] = Field(description="clamps, supports that must be out of the way")
     obstacle: ObstacleRecord | None
     weights: dict[str, Row] | None = Field(description="on unit normals: no direction, or none but `direction`'s line")
     branches: list[dict[str, Row]] | None = Field(None, description="weights, where alternatives need several sets")

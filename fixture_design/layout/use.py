@@ -144,6 +144,7 @@ class LoadVerdict:
 
     Attributes:
         load: its name; "no load" for gravity and preloads alone.  row: of a load path, counted from 1; else None.
+        wrench: of the load, about W's origin.
         answer: whether a balance exists at factor 1.
         reserve: (lower, upper) bound of the largest factor on the load that can be held; inf where nothing limits it;
             None where it is not held at any factor.
@@ -156,6 +157,7 @@ class LoadVerdict:
 
     load: str
     row: int | None
+    wrench: Vector
     answer: Answer
     reserve: tuple[float, float] | None
     needed: float
@@ -178,6 +180,7 @@ class LoadsHeld:
     Attributes:
         loads: one a load, and one a point of a load path, in file order.
         worst: index into ``loads`` of the one with the least reserve, or that fails.
+        weight: what acts besides, a wrench about W's origin.
         preloads: for each element that pushes with a given force, that force [N]; its contacts share it.
         least_preloads: for each clamp the preload of the smallest set (by sum) that holds everything [N], within its
             limits; None where no preloads do, or there is no clamp whose preload may be chosen.
@@ -188,6 +191,7 @@ class LoadsHeld:
     loads: tuple[LoadVerdict, ...]
     worst: int
     preloads: Mapping[str, float]
+    weight: Vector
     least_preloads: Mapping[str, float] | None = None
     determinate: bool = True
     stiff: Mapping[str, ContactForce] | None = None
@@ -224,10 +228,18 @@ class SeatingStep:
 
 @dataclass(frozen=True, eq=False)
 class Seating:
-    """Evidence for `seated`: the steps in order, and the force each clamp in a step pushes with [N]."""
+    """Evidence for `seated`.
+
+    Attributes:
+        steps: in order.  preloads: the force each clamp in a step pushes with [N].
+        weight: what acts besides, a wrench about W's origin.
+        smooth: the last step once more without friction: pressed by that alone, the part stays on its locators.
+    """
 
     steps: tuple[SeatingStep, ...]
     preloads: Mapping[str, float]
+    weight: Vector
+    smooth: SeatingStep
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,6 +274,7 @@ class StraightWays:
         weights: where there is no direction at all, weights >= 0 on unit normals, one a normal, that say so: they
             balance with rank p. Where there is a direction and no other but its opposite, likewise with rank p - 1.
         branches: the same where alternatives need several sets of weights, one set for each branch that needs one.
+        aside: those of ``open``, and bodies, that would be in the way where they are when closed.
         tried: something that is in the way in each direction that was tried and is blocked, one each.
     """
 
@@ -278,3 +291,4 @@ class StraightWays:
     weights: Mapping[str, tuple[float, ...]] | None = None
     branches: tuple[Mapping[str, tuple[float, ...]], ...] = ()
     tried: tuple[Obstacle, ...] = ()
+    aside: tuple[str, ...] = ()

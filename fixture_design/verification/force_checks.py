@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from fixture_design.analysis.seating import without_friction
+from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact
 from fixture_design.layout import (
     Answer,
@@ -18,7 +20,7 @@ from fixture_design.layout import (
     Unbalanced,
     element_name,
 )
-from fixture_design.tolerances import LOAD_TIE
+from fixture_design.tolerances import LOAD_TIE, WITNESS
 from fixture_design.verification.force_proofs import balance_fault, motion_surplus, unbalanced_fault
 from fixture_design.verification.proofs import Case, coverage_fault
 
@@ -33,7 +35,7 @@ def loads_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
     if fault := _names_fault(use.preloads, contacts):
         return fault
     for load in use.loads:
-        if fault := _load_fault(load, contacts, use.preloads):
+        if fault := _load_fault(load, contacts, use.preloads, use.weight):
             return f"{load.load}{'' if load.row is None else f' row {load.row}'}: {fault}"
     answers = {load.answer for load in use.loads}
     if finding.answer is Answer.YES and answers != {Answer.YES}:
@@ -51,10 +53,16 @@ def _names_fault(preloads: Mapping[str, float], contacts: Sequence[Contact]) -> 
     return f"{', '.join(wrong)} pushes with no number" if wrong else None
 
 
-def _load_fault(load: LoadVerdict, contacts: Sequence[Contact], preloads: Mapping[str, float]) -> str | None:
+def _load_fault(
+    load: LoadVerdict, contacts: Sequence[Contact], preloads: Mapping[str, float], weight: Vector
+) -> str | None:
     """A proof of the answer, and a reserve that does not contradict it."""
     if load.answer is Answer.UNDECIDED:
         return None
+    if load.proof is None or not all(
+        np.allclose(proof.wrench, weight + load.wrench, rtol=WITNESS, atol=0) for proof in (load.proof, *load.others)
+    ):
+        return "what it balances is not the weight and the load"
     if fault := _proof_fault(load.answer, load.proof, load.others, contacts, preloads):
         return fault
     if load.answer is Answer.YES:
@@ -90,24 +98,39 @@ def seated_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
         return "its steps are not those of the clamps in their order"
     for number, step in enumerate(use.steps):
         closed = dict(list(use.preloads.items())[:number])
-        if fault := _step_fault(step, finding.answer, contacts, closed):
+        if fault := _step_fault(step, finding.answer, contacts, closed, use.weight):
             return f"{'gravity' if step.clamp is None else step.clamp}: {fault}"
-    last = use.steps[-1]
     if finding.answer is Answer.NO:
-        return None if last.answer is Answer.NO else "the part is unseated at no step"
-    if len(use.steps) != len(order):
+        return None if use.steps[-1].answer is Answer.NO else "the part is unseated at no step"
+    return _seat_fault(use, contacts) if finding.answer is Answer.YES else None
+
+
+def _seat_fault(use: Seating, contacts: Sequence[Contact]) -> str | None:
+    """Whether all clamps close, and every locator was pressed for certain, and is at the end without friction."""
+    if len(use.steps) != len(use.preloads) + 1 or {*use.preloads} != _clamps(contacts):
         return "there are steps missing"
     pressed = {name for step in use.steps for name in step.presses}
-    never = [name for name in _locators(contacts) if name not in pressed or last.reactions[name][1] <= 0]
-    return f"nothing shows that {', '.join(never)} is pressed" if never or not pressed else None
+    never = [name for name in _locators(contacts) if name not in pressed or name not in use.smooth.presses]
+    if never or not pressed or use.smooth.answer is not Answer.YES:
+        return f"nothing shows that {', '.join(never) or 'a locator'} is pressed"
+    fault = _step_fault(use.smooth, Answer.YES, without_friction(contacts), use.preloads, use.weight)
+    return None if fault is None else f"without friction: {fault}"
+
+
+def _clamps(contacts: Sequence[Contact]) -> set[str]:
+    return {element_name(contact.name) for contact in contacts if contact.role == "clamp"}
 
 
 def _step_fault(
-    step: SeatingStep, answer: Answer | None, contacts: Sequence[Contact], preloads: Mapping[str, float]
+    step: SeatingStep, answer: Answer | None, contacts: Sequence[Contact], preloads: Mapping[str, float], weight: Vector
 ) -> str | None:
     acting = [c for c in contacts if c.role != "support" and (c.role != "clamp" or element_name(c.name) in preloads)]
     if not acting:
         return "nothing touches the part"
+    motions = [motion for shown in step.presses.values() for motion in shown]
+    proofs = [proof for proof in (step.proof, *step.others, *motions) if proof is not None]
+    if not all(np.array_equal(proof.wrench, weight) for proof in proofs):
+        return "what it balances is not the weight"
     if step.answer is Answer.NO:
         return _proof_fault(Answer.NO, step.proof, step.others, acting, preloads)
     if answer is Answer.YES and (fault := _proof_fault(Answer.YES, step.proof, (), acting, preloads)):
@@ -136,9 +159,9 @@ def _pressed_fault(
         least = motion_surplus(motion, contacts, preloads, spared=name)
         if isinstance(least, str):
             return least
+        if name not in step.reactions:
+            return f"{name} has no reaction"
         stated = step.reactions[name][0]
         if not (least > 0 and stated <= least * (1 + LOAD_TIE)):
             return f"{name} is pressed with {least:.6g} N at least, not {stated:.6g} N"
-        if isinstance(step.proof, Balance) and not np.array_equal(motion.wrench, step.proof.wrench):
-            return f"what presses {name} is another wrench"
     return coverage_fault([motion.choice for motion in motions], Case(contacts, contacts[0].dimension))

@@ -66,7 +66,6 @@ def _wrench_of(contact: Contact, force: ContactForce, scale: Scale) -> Vector:
 
 def _largest(balance: Balance, scale: Scale, preloads: Mapping[str, float]) -> float:
     sizes = [np.linalg.norm(_about(balance.wrench, scale)), *preloads.values()]
-    sizes += [np.linalg.norm(one) for force in balance.forces.values() for one in force.forces]
     return float(max(sizes)) or 1.0
 
 

@@ -47,18 +47,29 @@ def holds_loads(layout: Layout, group: Group, found: FoundContacts, tolerances: 
     if isinstance(weight, str):
         return Finding(Answer.UNDECIDED, reason=weight)
     preloads = preloads_of(layout, group.contacts)
+    if without := _without_preload(group.contacts, preloads):
+        return Finding(Answer.UNDECIDED, reason=without)
     verdicts = held_loads(group.contacts, preloads, weight, rows, tolerances)
     worst = min(range(len(rows)), key=lambda index: severity(verdicts[index]))
+    stiff = _stiff(layout, group, preloads, weight + rows[worst].wrench, tolerances)
     use = LoadsHeld(
         verdicts,
         worst,
         preloads,
+        weight,
         _least(layout, group, preloads, weight, rows, tolerances),
-        determinate(group.contacts, preloads, tolerances),
-        _stiff(layout, group, preloads, weight + rows[worst].wrench, tolerances),
+        stiff is not None or determinate(group.contacts, preloads, tolerances),
+        stiff,
     )
     residuals = [verdict.proof.residual for verdict in verdicts if isinstance(verdict.proof, Balance)]
     return Finding(verdicts[worst].answer, residual=max(residuals, default=None), reason=_reason(verdicts), use=use)
+
+
+def _without_preload(contacts: Sequence[Contact], preloads: Mapping[str, float]) -> str | None:
+    """A clamp pushes with its preload; without one nobody knows with what."""
+    clamps = dict.fromkeys(element_name(c.name) for c in contacts if c.role == "clamp")
+    without = [name for name in clamps if name not in preloads]
+    return f"clamp {', '.join(without)} has no preload" if without else None
 
 
 def acting_weight(layout: Layout, group: Group, found: FoundContacts) -> Vector | str:
@@ -119,8 +130,6 @@ def seated(layout: Layout, group: Group, found: FoundContacts, tolerances: Toler
     if isinstance(weight, str):
         return Finding(Answer.UNDECIDED, reason=weight)
     preloads = preloads_of(layout, group.contacts)
-    clamps = dict.fromkeys(element_name(c.name) for c in group.contacts if c.role == "clamp")
-    without = [name for name in clamps if name not in preloads]
-    if without:
-        return Finding(Answer.UNDECIDED, reason=f"clamp {', '.join(without)} has no preload")
+    if without := _without_preload(group.contacts, preloads):
+        return Finding(Answer.UNDECIDED, reason=without)
     return seating(group.contacts, preloads, weight, tolerances)

@@ -2,7 +2,9 @@
 
 First the contacts: which translations they admit (`analysis.straight_ways`). Then, where the part's shape is known, the
 way itself: whether the part, moved along one of them, meets any element or body of the fixture. While it is loaded
-clamps are open and supports down; pins that have clearance keep nothing in, but the part must come off them.
+clamps are open and supports down; pins that have clearance keep nothing in, but the part must come off them. A way
+past all clamps, wherever they are when open, is preferred to one on which some have to be out of the way; these are
+named.
 
 yes: a direction that the contacts admit, along which nothing is in the way. no: the contacts admit none, or none but
 those of one line, and these are blocked. Where there are more directions than can be tried, it is undecided.
@@ -11,6 +13,7 @@ those of one line, and these are blocked. Where there are more directions than c
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,17 +29,20 @@ from fixture_design.verification.found import FoundContacts
 if TYPE_CHECKING:
     from fixture_design.geometry import PlanarSurroundings, Surroundings
 
-#: Roles of what is closed while the part is loaded.
-CLOSED: tuple[Role, ...] = ("locator", "finger")
+#: Roles of what is closed while the part is loaded, and stands in its place; and of what is open or down.
+STANDING: tuple[Role, ...] = ("locator", "finger")
+OPENED: tuple[Role, ...] = ("clamp", "support")
 #: Directions tried before it is left undecided.
 MOST_TRIED = 40
+#: Clear directions of which the one with fewest clamps in the way is taken.
+MOST_COMPARED = 6
 #: Names in one reason before it says "and so many more".
 _NAMES_SHOWN = 4
 
 
 def closed_while_loading(contact: Contact) -> bool:
     """Whether a contact keeps the part in while it is loaded."""
-    return contact.role in CLOSED and not contact.clearance
+    return contact.role in STANDING and not contact.clearance
 
 
 def loadable(layout: Layout, group: Group, found: FoundContacts, tolerances: Tolerances) -> Finding:
@@ -58,28 +64,41 @@ def loadable(layout: Layout, group: Group, found: FoundContacts, tolerances: Tol
         return Finding(Answer.UNDECIDED, use=_ways(cone, opened, cone.first), reason=cone.reason)
     if cone.truth is False:
         return Finding(Answer.NO, residual=max(_off(asked, w) for w in cone.weights), use=_ways(cone, opened, None))
-    around = _surroundings(layout, found)
+    around = _surroundings(layout, found, STANDING)
     if around is None:
         assert cone.first is not None
         return _yes(cone, _ways(cone, opened, cone.first), cone.first)
-    return _tried(layout, cone, opened, around)
+    away = _surroundings(layout, found, OPENED)
+    assert away is not None
+    return _tried(layout, cone, opened, around, away)
 
 
 def _tried(
-    layout: Layout, cone: DirectionCone, opened: tuple[str, ...], around: Surroundings | PlanarSurroundings
+    layout: Layout,
+    cone: DirectionCone,
+    opened: tuple[str, ...],
+    around: Surroundings | PlanarSurroundings,
+    away: Surroundings | PlanarSurroundings,
 ) -> Finding:
     """The first direction along which nothing is in the way, or what is in the way in all of them."""
     blocked: list[Obstacle] = []
+    clear: list[tuple[Point, tuple[str, ...]]] = []
     certain = True
     directions = cone.candidates(_preferred(layout))
     for direction in directions[:MOST_TRIED]:
         # what is first in the way is told of the best one, and of all there are if these are few
         meeting = around.meeting(direction, any_one=bool(blocked) and cone.confining is None)
         if meeting is None:
-            ways = _ways(cone, opened, direction, length=around.length(direction), against=around.names)
-            return _yes(cone, ways, direction)
+            clear.append((direction, away.met(direction)))
+            if not clear[-1][1] or len(clear) == MOST_COMPARED:
+                break
+            continue
         blocked.append(meeting.obstacle)
         certain = certain and meeting.certain
+    if clear:
+        direction, aside = min(clear, key=lambda way: len(way[1]))
+        ways = _ways(cone, opened, direction, length=around.length(direction), against=around.names)
+        return _yes(cone, replace(ways, aside=aside), direction)
     first, confining = directions[0], cone.confining
     ways = _ways(
         cone, opened, first, length=around.length(first), against=around.names,
@@ -110,15 +129,17 @@ def _why(blocked: Sequence[Obstacle], confined: bool) -> str:
 
 def _preferred(layout: Layout) -> list[Point]:
     """Along pins and against gravity, then along the part's axes, all both ways."""
-    pins = [e.axis for e in layout.elements if isinstance(e.tip, PinTip) and e.axis is not None and e.role in CLOSED]
+    pins = [e.axis for e in layout.elements if isinstance(e.tip, PinTip) and e.axis is not None and e.role in STANDING]
     axes = [] if layout.part is None else list(layout.part.pose.rotation.T)
     found = [np.asarray(axis, dtype=np.float64) for axis in (*pins, *axes)]
     scaled = [axis / np.abs(axis).max() for axis in found if axis.any()]
     return [sign * axis for axis in scaled for sign in (1.0, -1.0)]
 
 
-def _surroundings(layout: Layout, found: FoundContacts) -> Surroundings | PlanarSurroundings | None:
-    """What stands around the part; None where the part has no shape."""
+def _surroundings(
+    layout: Layout, found: FoundContacts, roles: Sequence[Role]
+) -> Surroundings | PlanarSurroundings | None:
+    """What has one of these roles around the part; None where the part has no shape."""
     if layout.part is None:
         return None
     from fixture_design.geometry import (  # noqa: PLC0415 - Drake only where there is geometry
@@ -135,8 +156,8 @@ def _surroundings(layout: Layout, found: FoundContacts) -> Surroundings | Planar
     with looking_at(layout.source, layout.places.get(("part",))):
         geometry = found.geometry or load_geometry(part)
     if isinstance(geometry, Polygon):
-        return PlanarSurroundings.of(layout, geometry, found.contacts)
-    return Surroundings.of(layout, geometry, found.contacts)
+        return PlanarSurroundings.of(layout, geometry, found.contacts, roles)
+    return Surroundings.of(layout, geometry, found.contacts, roles)
 
 
 def _yes(cone: DirectionCone, ways: StraightWays, direction: Point) -> Finding:

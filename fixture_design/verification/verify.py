@@ -69,7 +69,7 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
     groups = groups_of(layout, found.contacts)
     verdicts = group_verdicts(groups, found.report, notes, tolerances)
     verdicts = {group.name: with_use(verdicts[group.name], layout, group, found, tolerances) for group in groups}
-    notes += weight_notes(layout, groups, found)
+    notes += [*weight_notes(layout, groups, found), *_preload_notes(layout)]
     requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
     return Verdict(
         name=layout.name,
@@ -192,6 +192,15 @@ def _same_normals(first: Contact, second: Contact) -> bool:
         return False
     pairs = zip(first.normals, second.normals, strict=True)
     return all(np.allclose(unit_normal(a), unit_normal(b), rtol=0, atol=DEFAULT.tie) for a, b in pairs)
+
+
+def _preload_notes(layout: Layout) -> list[str]:
+    """A preload beyond the limits is taken as it is: limits bind design."""
+    return [
+        f"clamp {e.name}: its preload of {e.preload:g} N is outside of its limits"
+        for e in layout.elements
+        if e.preload is not None and e.limits is not None and not e.limits[0] <= e.preload <= e.limits[1]
+    ]
 
 
 def _requirement_verdicts(

@@ -86,11 +86,18 @@ def _load_table(use: LoadsHeld) -> Markup:
     ]  # fmt: skip
     hidden = len(use.loads) - len(rows)
     said = [f"{hidden} more points of load paths have a larger reserve."] if hidden else []
-    said += [f"Reactions are {'' if use.determinate else 'not '}determined by statics alone."]
+    said += [_determined(use)]
     if use.least_preloads is not None:
         least = ", ".join(f"{name} {value:.4g} N" for name, value in use.least_preloads.items())
         said.append(f"Least preloads that hold everything: {least}.")
     return joined([table(["load", "row", "held", "factor"], rows), *(tag("p", text) for text in said)])
+
+
+def _determined(use: LoadsHeld) -> str:
+    if use.stiff is None:
+        return f"Reactions are {'' if use.determinate else 'not '}determined by statics alone."
+    forces = ", ".join(f"{name} {numbers_text(force.forces.sum(axis=0))}" for name, force in use.stiff.items())
+    return f"Reactions at the worst load by the stiffness given, contacts taken to hold both ways [N]: {forces}."
 
 
 def _shown(loads: Sequence[LoadVerdict]) -> list[LoadVerdict]:

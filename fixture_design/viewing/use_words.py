@@ -147,4 +147,5 @@ def _ways(evidence: StraightWays, length: float) -> str:
         return f"along {along} it meets {evidence.obstacle.name} after {after}, at {point}{aside}"
     sliding = f", sliding along {names_in_words(evidence.slides)}" if evidence.slides else ""
     clear = "" if evidence.length is None else f", clear for {format_length(evidence.length)}"
-    return f"straight out along {along}{sliding}{clear}{aside}"
+    must = f"; {names_in_words(evidence.aside)} must be out of the way" if evidence.aside else ""
+    return f"straight out along {along}{sliding}{clear}{aside}{must}"

@@ -77,7 +77,7 @@ def held(contacts: Sequence[Contact], preloads: Mapping[str, float], load: LoadR
     """The verdict about one load; its proof is checked, and it has a reason where it has none."""
     constant = np.zeros(len(load.wrench)) if constant is None else constant
     (verdict,) = held_loads(contacts, preloads, constant, [load])
-    use = LoadsHeld((verdict,), 0, preloads)
+    use = LoadsHeld((verdict,), 0, preloads, constant)
     if verdict.answer is Answer.UNDECIDED:
         assert verdict.reason
     else:

@@ -353,7 +353,7 @@ def force(verdict, name, forces):
 def test_the_checker_finds_wrong_balances(word):
     verdict = held(opposed(), {"K": 200.0}, across(79.0))
     wrong = FAULTS[word](verdict)
-    fault = loads_fault(Finding(Answer.YES, use=LoadsHeld((wrong,), 0, {"K": 200.0})), opposed())
+    fault = loads_fault(Finding(Answer.YES, use=LoadsHeld((wrong,), 0, {"K": 200.0}, np.zeros(6))), opposed())
     assert fault is not None
     assert word in fault
 
@@ -367,12 +367,14 @@ def test_the_checker_finds_wrong_motions():
         ([np.nan] * 6, "none"),
     ):
         wrong = replace(verdict, proof=replace(verdict.proof, motion=np.array(motion)))
-        fault = loads_fault(Finding(Answer.NO, use=LoadsHeld((wrong,), 0, {"K": 200.0})), opposed())
+        fault = loads_fault(Finding(Answer.NO, use=LoadsHeld((wrong,), 0, {"K": 200.0}, np.zeros(6))), opposed())
         assert fault is not None
         assert word in fault
-    weaker = loads_fault(Finding(Answer.NO, use=LoadsHeld((verdict,), 0, {"K": 210.0})), opposed())
+    weaker = loads_fault(Finding(Answer.NO, use=LoadsHeld((verdict,), 0, {"K": 210.0}, np.zeros(6))), opposed())
     assert "proves nothing" in weaker
-    assert loads_fault(Finding(Answer.YES, use=LoadsHeld((verdict,), 0, {"K": 200.0})), opposed()) is not None
+    assert (
+        loads_fault(Finding(Answer.YES, use=LoadsHeld((verdict,), 0, {"K": 200.0}, np.zeros(6))), opposed()) is not None
+    )
     assert isinstance(verdict.proof, Unbalanced)
 
 
