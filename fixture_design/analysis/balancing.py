@@ -66,11 +66,10 @@ class Hint:
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """A balance, or motions for all branches that there is none, or a reason."""
+    """Balances for all branches, or a motion for one of them that it has none, or a reason."""
 
-    balance: Balance | None = None
-    against: tuple[Unbalanced, ...] = ()
-    branch: ForceBranch | None = None
+    balances: tuple[Balance, ...] = ()
+    against: Unbalanced | None = None
     reason: str | None = None
 
 
@@ -114,26 +113,27 @@ def settle(
     tolerances: Tolerances,
     hints: Sequence[Hint] | None = None,
 ) -> Settled:
-    """Whether the contacts balance a wrench [N, N m] about W's origin, with their preloads: in any of the branches.
+    """Whether the contacts balance a wrench [N, N m] about W's origin, with their preloads, in every branch.
+
+    The part may move along any branch, so that F = A* is what all branches can do (2-17, Table 3).
 
     Args:
         hints: for each branch what is tried first.
     """
-    against: list[Unbalanced] = []
+    balances: list[Balance] = []
     reason = None if complete else f"more than {MOST_FORCE_BRANCHES} choices of the faces that push"
     for branch, hint in zip(branches, hints or [Hint()] * len(branches), strict=True):
         proof = _hinted(branch, hint, wrench, tolerances)
         proof, why = (proof, None) if proof is not None else _settle(branch, wrench, tolerances)
         if isinstance(proof, Balance):
-            return Settled(proof, branch=branch)
-        if proof is not None:
-            against.append(proof)
-        reason = reason or why
-    if reason is None and edges_along_edges(branches[0].inner.contacts):
-        reason = "convex edges touch along parallel convex edges, whose points may take different faces"
-    if reason is None:
-        return Settled(against=tuple(against))
-    return Settled(reason=reason)
+            balances.append(replace(proof, choice=branch.choice))
+        elif proof is None:
+            reason = reason or why
+        elif edges_along_edges(branch.inner.contacts):
+            reason = reason or "convex edges touch along parallel convex edges, whose points may take different faces"
+        else:
+            return Settled(against=proof)
+    return Settled(reason=reason) if reason is not None else Settled(tuple(balances))
 
 
 def edges_along_edges(contacts: Sequence[Contact]) -> bool:

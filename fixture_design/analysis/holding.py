@@ -71,29 +71,27 @@ def _held(
     if ranges is None:
         return _without_load(row, settle(branches, complete, constant + row.wrench, tolerances))
     settled = settle(branches, complete, constant + row.wrench, tolerances, [found.hint for found in ranges])
-    best = max(ranges, key=lambda found: found.reserve)
-    most = max(found.reserve[1] for found in ranges) if complete else np.inf
-    reserve = None if most < 0 else (max(best.reserve[0], 0.0), most)
-    if settled.branch is not None:
-        ranges = [found for branch, found in zip(branches, ranges, strict=True) if branch is settled.branch]
-    needed = max(0.0, next(filter(np.isfinite, best.needed[::-1]), 0.0))
+    # the part is held only if it is in every branch
+    first = min(ranges, key=lambda found: found.reserve[1])
+    low, high = min(found.reserve[0] for found in ranges), first.reserve[1]
+    reserve = None if high < 0 else (max(low, 0.0) if complete else 0.0, high)
+    needed = max(0.0, *(next(filter(np.isfinite, found.needed[::-1]), 0.0) for found in ranges))
     answer, reason = _answer(settled, ranges)
-    verdict = LoadVerdict(row.load, row.row, row.wrench, answer, reserve, needed, None, best.first, reason)
+    verdict = LoadVerdict(row.load, row.row, row.wrench, answer, reserve, needed, None, first.first, reason)
     return _with_proof(verdict, settled)
 
 
 def _with_proof(verdict: LoadVerdict, settled: Settled) -> LoadVerdict:
     if verdict.answer is Answer.YES:
-        return replace(verdict, proof=settled.balance)
-    if verdict.answer is Answer.NO:
-        return replace(verdict, proof=settled.against[0], others=settled.against[1:])
-    return verdict
+        return replace(verdict, proof=settled.balances[0], others=settled.balances[1:])
+    return replace(verdict, proof=settled.against) if verdict.answer is Answer.NO else verdict
 
 
 def _without_load(row: LoadRow, settled: Settled) -> LoadVerdict:
     """A load of nothing: any factor on it is the same."""
-    if settled.balance is not None:
-        return LoadVerdict(row.load, row.row, row.wrench, Answer.YES, (np.inf, np.inf), 0.0, settled.balance)
+    if settled.balances:
+        held = LoadVerdict(row.load, row.row, row.wrench, Answer.YES, (np.inf, np.inf), 0.0, None)
+        return _with_proof(held, settled)
     answer = Answer.UNDECIDED if settled.reason else Answer.NO
     reserve = (0.0, np.inf) if settled.reason else None
     return _with_proof(
@@ -103,17 +101,17 @@ def _without_load(row: LoadRow, settled: Settled) -> LoadVerdict:
 
 def _answer(settled: Settled, ranges: Sequence[FactorRange]) -> tuple[Answer, str | None]:
     """The answer at factor 1: a proof, and 1 not within a tie of an end."""
-    if settled.balance is not None:
-        clear = ranges[0].reserve[0] > 1 + LOAD_TIE and ranges[0].needed[1] < 1 - LOAD_TIE
-        return (Answer.YES, None) if clear else (Answer.UNDECIDED, _tie(ranges[0]))
+    if settled.balances:
+        clear = all(r.reserve[0] > 1 + LOAD_TIE and r.needed[1] < 1 - LOAD_TIE for r in ranges)
+        return (Answer.YES, None) if clear else (Answer.UNDECIDED, _tie(ranges))
     if settled.reason is not None:
         return Answer.UNDECIDED, settled.reason
-    outside = all(found.reserve[1] < 1 - LOAD_TIE or found.needed[0] > 1 + LOAD_TIE for found in ranges)
-    return (Answer.NO, None) if outside else (Answer.UNDECIDED, _tie(ranges[0]))
+    outside = any(found.reserve[1] < 1 - LOAD_TIE or found.needed[0] > 1 + LOAD_TIE for found in ranges)
+    return (Answer.NO, None) if outside else (Answer.UNDECIDED, _tie(ranges))
 
 
-def _tie(found: FactorRange) -> str:
-    first = [f"{name} {what}" for name, what in found.first]
+def _tie(ranges: Sequence[FactorRange]) -> str:
+    first = [f"{name} {what}" for name, what in min(ranges, key=lambda found: found.reserve[1]).first]
     return f"a tie: the load is the largest that is held{', at which ' + ', '.join(first) if first else ''}"
 
 

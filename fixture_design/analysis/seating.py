@@ -27,7 +27,7 @@ from fixture_design.analysis.contact_forces import ContactForces
 from fixture_design.analysis.loads import largest_factors
 from fixture_design.arrays import Vector, Weights
 from fixture_design.cones.force_cones import ForceCones
-from fixture_design.contacts import Contact, motion_about_origin, scale_of, unit_normal, velocity
+from fixture_design.contacts import Contact, cross, motion_about_origin, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Finding, Seating, SeatingStep, Unbalanced, element_name
 from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, Tolerances
 
@@ -50,7 +50,7 @@ def seating(
         preloads: of every clamp that closes [N], in the order in which they do.
         weight: what acts besides, a wrench about W's origin.
     """
-    locators = list(dict.fromkeys(element_name(c.name) for c in contacts if c.role == "locator"))
+    locators = sat_on(contacts)
     if not locators:
         return Finding(Answer.UNDECIDED, reason="there are no locators for the part to sit on")
     steps: list[SeatingStep] = []
@@ -64,7 +64,32 @@ def seating(
     if last.answer is not Answer.NO and any(contact.friction for contact in contacts):
         smooth = _step(without_friction(contacts), preloads, last.clamp, weight, locators, (), tolerances)
     answer, reason = _summed_up(steps, smooth)
+    if answer is Answer.YES and _on_an_edge(contacts, preloads, weight, tolerances):
+        answer, reason = Answer.UNDECIDED, "a tie: the weight is on the very edge of what the locators support"
     return Finding(answer, reason=reason, use=Seating(tuple(steps), dict(preloads), weight, smooth))
+
+
+def sat_on(contacts: Sequence[Contact]) -> list[str]:
+    """The elements that must be pressed: locators, but for pins with clearance, which touch nowhere for sure."""
+    return list(dict.fromkeys(element_name(c.name) for c in contacts if c.role == "locator" and not c.clearance))
+
+
+def _on_an_edge(
+    contacts: Sequence[Contact], preloads: Mapping[str, float], weight: Vector, tolerances: Tolerances
+) -> bool:
+    """Whether the part tips if its centre of mass is off by a tie, any way."""
+    acting = [c for c in contacts if c.role != "support"]
+    scale, plane = scale_of(acting), len(contacts[0].point)
+    force = weight[:plane]
+    if not force.any():
+        return False
+    branches, complete = branches_of(acting, preloads, tolerances)
+    for shift in np.vstack([np.eye(plane), -np.eye(plane)]) * tolerances.near * scale.length:
+        turning = cross(shift[None], force[None])[0]
+        moved = np.append(force, weight[plane:] + turning)
+        if np.any(turning) and not settle(branches, complete, moved, tolerances).balances:
+            return True
+    return False
 
 
 def without_friction(contacts: Sequence[Contact]) -> list[Contact]:
@@ -94,7 +119,9 @@ def _summed_up(steps: Sequence[SeatingStep], smooth: SeatingStep) -> tuple[Answe
     if never:
         return Answer.UNDECIDED, f"friction leaves open whether the part is pressed against {', '.join(never)}"
     loose = smooth.lifted or smooth.idle
-    return Answer.UNDECIDED, f"only friction keeps the part on {', '.join(loose)}" if loose else smooth.cause
+    if loose:
+        return Answer.UNDECIDED, f"only friction keeps the part on {', '.join(loose)}"
+    return Answer.UNDECIDED, smooth.cause or "without friction it is open whether the part is pressed"
 
 
 def _when(step: SeatingStep) -> str:
@@ -114,7 +141,7 @@ def _step(
     pushing = {name: preloads[name] for name in {element_name(c.name): 0 for c in acting} if name in preloads}
     branches, complete = branches_of(acting, pushing, tolerances)
     settled = settle(branches, complete, weight, tolerances)
-    if settled.balance is None:
+    if not settled.balances:
         return _unseated(settled, clamp, acting, locators, pressed_before)
     found = {name: _pressing(branches, name, weight) for name in locators}
     unit = branches[0].unit_for(weight)
@@ -122,14 +149,15 @@ def _step(
     idle = tuple(n for n, p in found.items() if p.largest[1] <= LOAD_TIE * unit)
     reactions = {name: (_zeroed(p.least[0], unit), _zeroed(p.largest[1], unit)) for name, p in found.items()}
     doubtful = [name for name in locators if name not in pressed and name not in idle]
-    cause = f"friction leaves open whether the part is pressed against {', '.join(doubtful)}" if doubtful else None
+    rough = "friction" if any(contact.friction for contact in acting) else "statics"
+    cause = f"{rough} leaves open whether the part is pressed against {', '.join(doubtful)}" if doubtful else None
     certain = complete and not edges_along_edges(acting)
     if not certain:
         pressed, cause = [], cause or "its alternatives leave open whether the part is pressed"
     answer = Answer.YES if len(pressed) == len(locators) else Answer.UNDECIDED
-    return SeatingStep(
-        clamp, answer, reactions, idle, (), settled.balance, cause, (), {name: found[name].proofs for name in pressed}
-    )
+    proof, *others = settled.balances
+    presses = {name: found[name].proofs for name in pressed}
+    return SeatingStep(clamp, answer, reactions, idle, (), proof, cause, tuple(others), presses)
 
 
 def _zeroed(force: float, unit: float) -> float:
@@ -141,14 +169,14 @@ def _unseated(
     settled: Settled, clamp: str | None, acting: Sequence[Contact], locators: Sequence[str], before: Sequence[str]
 ) -> SeatingStep:
     """Named are those locators that the part leaves and was pressed against before; without any, all that it leaves."""
-    if not settled.against:
+    if settled.against is None:
         return SeatingStep(clamp, Answer.UNDECIDED, {}, (), (), None, settled.reason)
-    leaving = [_left(motion, acting) for motion in settled.against]
-    left = tuple(name for name in locators if any(name in names for names in leaving))
+    leaving = _left(settled.against, acting)
+    left = tuple(name for name in locators if name in leaving)
     lifted = tuple(name for name in left if name in before) or left
     who = "gravity" if clamp is None else clamp
     cause = f"{who} moves the part" + (f" off {', '.join(lifted)}" if lifted else "")
-    return SeatingStep(clamp, Answer.NO, {}, (), lifted, settled.against[0], cause, settled.against[1:])
+    return SeatingStep(clamp, Answer.NO, {}, (), lifted, settled.against, cause)
 
 
 def _left(against: Unbalanced, contacts: Sequence[Contact]) -> set[str]:

@@ -11,7 +11,7 @@ from fixture_design.cli.exit_codes import ExitCode, of_answer, worst
 from fixture_design.cli.messages import met_in, say, say_internal_error
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, error_record, read_layout, verdict_to_dict
-from fixture_design.layout import Layout, Verdict
+from fixture_design.layout import Layout, Verdict, named_files
 
 
 def verify(
@@ -32,9 +32,11 @@ def verify(
     codes: list[ExitCode] = []
     records: list[dict[str, Any]] = []
     verified: list[tuple[Layout, Verdict]] = []
+    inputs = list(layouts)
     for path in layouts:
         try:
             layout = read_layout(path)
+            inputs += named_files(layout)
             verdict = verify_layout(layout)
         except InputError as error:
             say(met_in(path, error))
@@ -57,16 +59,16 @@ def verify(
     if as_json:
         typer.echo(dumps(records[0] if len(layouts) == 1 else records))
     if report is not None:
-        codes.append(_write_report(report, layouts, verified))
+        codes.append(_write_report(report, inputs, verified))
     raise typer.Exit(worst(codes))
 
 
-def _write_report(report: Path, layouts: list[Path], verified: list[tuple[Layout, Verdict]]) -> ExitCode:
+def _write_report(report: Path, inputs: list[Path], verified: list[tuple[Layout, Verdict]]) -> ExitCode:
     """Sheets of the layouts that could be verified; the others have had their message."""
     from fixture_design.viewing import refuse_inputs, write_report  # noqa: PLC0415 - reads geometry again
 
     try:
-        refuse_inputs(report, layouts)
+        refuse_inputs(report, inputs)
         if verified:
             write_report(verified, report)
     except InputError as error:

@@ -14,11 +14,13 @@ from fixture_design.layout import Layout
 
 @dataclass(frozen=True)
 class InputFile:
-    """``sha256`` of the bytes of a ``file``, and its ``role``: "layout", "part", "body vblock", "load cutting"."""
+    """``sha256`` of the bytes of a ``file``, None where it is not there, and its ``role``: "layout", "part", "body
+    vblock", "load cutting".
+    """
 
     role: str
     file: Path
-    sha256: str
+    sha256: str | None
 
 
 def input_files(layout: Layout) -> tuple[InputFile, ...]:
@@ -46,6 +48,8 @@ def _is_mesh(element: ElementTree.Element) -> bool:
     return str(element.tag).rpartition("}")[2] == "mesh"
 
 
-def _sha256(file: Path) -> str:
+def _sha256(file: Path) -> str | None:
+    if not file.is_file():  # a load path that no stage uses
+        return None
     with file.open("rb") as opened:
         return hashlib.file_digest(opened, "sha256").hexdigest()

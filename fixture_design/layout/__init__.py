@@ -19,6 +19,7 @@ from fixture_design.layout.layout import (
     SphereTip,
     Stage,
     Tip,
+    named_files,
 )
 from fixture_design.layout.pose import Pose
 from fixture_design.layout.use import (
@@ -99,5 +100,6 @@ __all__ = [
     "Weights",
     "element_name",
     "groups_of",
+    "named_files",
     "severity",
 ]

@@ -211,3 +211,10 @@ class Layout:
     source: Path | None = None
     units: Literal["m", "mm", "in"] = "m"
     places: Mapping[tuple[str, ...], str] = field(default_factory=dict)
+
+
+def named_files(layout: Layout) -> tuple[Path, ...]:
+    """The files that a layout names: of its part, its bodies, its load paths."""
+    part = () if layout.part is None or layout.part.file is None else (layout.part.file,)
+    paths = (load.path for load in layout.loads if load.path is not None)
+    return (*part, *(body.file for body in layout.bodies), *paths)

@@ -112,11 +112,16 @@ class ContactForce:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """Contact forces that balance ``wrench``; ``residual`` [-] is what is left, relative to the largest term."""
+    """Contact forces that balance ``wrench``; ``residual`` [-] is what is left, relative to the largest term.
+
+    Attributes:
+        choice: the alternatives that may push, as (contact, clause, alternative).
+    """
 
     wrench: Vector
     forces: Mapping[str, ContactForce]
     residual: float
+    choice: tuple[tuple[str, int, int], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +157,7 @@ class LoadVerdict:
         proof: at factor 1.
         first: elements that slip or lift first beyond the reserve, with what they do.
         reason: why it is undecided.
-        others: with a motion as proof, those of the branches that it is not about.
+        others: with a balance as proof, those of the other branches.
     """
 
     load: str
@@ -164,7 +169,7 @@ class LoadVerdict:
     proof: Balance | Unbalanced | None
     first: tuple[tuple[str, Literal["slips", "lifts"]], ...] = ()
     reason: str | None = None
-    others: tuple[Unbalanced, ...] = ()
+    others: tuple[Balance, ...] = ()
 
 
 def severity(load: LoadVerdict) -> tuple[int, float]:
@@ -209,7 +214,7 @@ class SeatingStep:
         idle: locators that nothing presses.  lifted: locators that the part leaves: no balance has them pressed.
         proof: that a balance exists, or that none does.
         cause: the clamp that unseats, and why, in words; None where nothing does.
-        others: with a motion as proof, those of the branches that it is not about.
+        others: with a balance as proof, those of the other branches.
         presses: for each locator that is pressed, motions q for all branches that say so: all others resist nothing
             (n . v + friction |[v_t; c w_n]| <= 0), it itself at most 1 a newton; then it is pressed with wrench . q -
             R(q) at least.
@@ -222,7 +227,7 @@ class SeatingStep:
     lifted: tuple[str, ...]
     proof: Balance | Unbalanced | None
     cause: str | None = None
-    others: tuple[Unbalanced, ...] = ()
+    others: tuple[Balance, ...] = ()
     presses: Mapping[str, tuple[Unbalanced, ...]] = field(default_factory=dict)
 
 

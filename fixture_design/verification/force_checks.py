@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fixture_design.analysis.seating import without_friction
+from fixture_design.analysis.seating import sat_on, without_friction
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact
 from fixture_design.layout import (
@@ -75,15 +75,28 @@ def _load_fault(
 def _proof_fault(
     answer: Answer,
     proof: Balance | Unbalanced | None,
-    others: Sequence[Unbalanced],
+    others: Sequence[Balance],
     contacts: Sequence[Contact],
     preloads: Mapping[str, float],
 ) -> str | None:
     if answer is Answer.YES:
-        return balance_fault(proof, contacts, preloads) if isinstance(proof, Balance) else "it needs a balance"
+        return (
+            _balances_fault((proof, *others), contacts, preloads)
+            if isinstance(proof, Balance)
+            else "it needs a balance"
+        )
     if not isinstance(proof, Unbalanced):
         return "it needs a motion"
-    return unbalanced_fault((proof, *others), contacts, preloads)
+    return unbalanced_fault(proof, contacts, preloads)
+
+
+def _balances_fault(
+    balances: Sequence[Balance], contacts: Sequence[Contact], preloads: Mapping[str, float]
+) -> str | None:
+    """Every branch has forces of its own that balance."""
+    faults = (balance_fault(balance, contacts, preloads) for balance in balances)
+    fault = next(filter(None, faults), None)
+    return fault or coverage_fault([balance.choice for balance in balances], Case(contacts, contacts[0].dimension))
 
 
 def seated_fault(finding: Finding, contacts: Sequence[Contact]) -> str | None:
@@ -110,7 +123,7 @@ def _seat_fault(use: Seating, contacts: Sequence[Contact]) -> str | None:
     if len(use.steps) != len(use.preloads) + 1 or {*use.preloads} != _clamps(contacts):
         return "there are steps missing"
     pressed = {name for step in use.steps for name in step.presses}
-    never = [name for name in _locators(contacts) if name not in pressed or name not in use.smooth.presses]
+    never = [name for name in sat_on(contacts) if name not in pressed or name not in use.smooth.presses]
     if never or not pressed or use.smooth.answer is not Answer.YES:
         return f"nothing shows that {', '.join(never) or 'a locator'} is pressed"
     fault = _step_fault(use.smooth, Answer.YES, without_friction(contacts), use.preloads, use.weight)
@@ -132,19 +145,15 @@ def _step_fault(
     if not all(np.array_equal(proof.wrench, weight) for proof in proofs):
         return "what it balances is not the weight"
     if step.answer is Answer.NO:
-        return _proof_fault(Answer.NO, step.proof, step.others, acting, preloads)
-    if answer is Answer.YES and (fault := _proof_fault(Answer.YES, step.proof, (), acting, preloads)):
+        return _proof_fault(Answer.NO, step.proof, (), acting, preloads)
+    if answer is Answer.YES and (fault := _proof_fault(Answer.YES, step.proof, step.others, acting, preloads)):
         return fault
     if step.answer is Answer.YES:
-        missing = [name for name in _locators(acting) if name not in step.presses]
+        missing = [name for name in sat_on(acting) if name not in step.presses]
         if missing or not step.presses:
             return f"nothing shows that {', '.join(missing) or 'a locator'} is pressed"
     faults = (_pressed_fault(name, motions, step, acting, preloads) for name, motions in step.presses.items())
     return next(filter(None, faults), None)
-
-
-def _locators(contacts: Sequence[Contact]) -> list[str]:
-    return list(dict.fromkeys(element_name(c.name) for c in contacts if c.role == "locator"))
 
 
 def _pressed_fault(

@@ -13,7 +13,6 @@ from fixture_design.arrays import Point, Vector
 from fixture_design.contacts import Contact, Scale, cross, motion_scaled, scale_of, unit_normal, velocity
 from fixture_design.layout import Balance, ContactForce, Unbalanced, element_name
 from fixture_design.tolerances import DEFAULT, WITNESS
-from fixture_design.verification.proofs import Case, coverage_fault
 
 
 def limit_of(scale: Scale) -> float:
@@ -35,7 +34,8 @@ def balance_fault(balance: Balance, contacts: Sequence[Contact], preloads: Mappi
     if not all(np.isfinite(array).all() for array in (balance.wrench, *arrays)):
         return "its forces are not finite"
     unit = _largest(balance, scale, preloads)
-    faults = (_force_fault(known[name], force, unit * limit_of(scale)) for name, force in balance.forces.items())
+    taken = {(name, clause): alternative for name, clause, alternative in balance.choice}
+    faults = (_force_fault(known[name], force, unit * limit_of(scale), taken) for name, force in balance.forces.items())
     if fault := next(filter(None, faults), None):
         return fault
     if fault := _preload_fault(balance, contacts, preloads, unit * limit_of(scale)):
@@ -69,8 +69,10 @@ def _largest(balance: Balance, scale: Scale, preloads: Mapping[str, float]) -> f
     return float(max(sizes)) or 1.0
 
 
-def _force_fault(contact: Contact, force: ContactForce, allowed: float) -> str | None:
-    """Each force is in the cone of its normal, and of alternatives only one pushes."""
+def _force_fault(
+    contact: Contact, force: ContactForce, allowed: float, taken: Mapping[tuple[str, int], int]
+) -> str | None:
+    """Each force is in the cone of its normal, and of alternatives only the one taken pushes."""
     if force.forces.shape != (len(contact.normals), len(contact.point)) or len(force.moments) != len(contact.normals):
         return f"{contact.name} has {len(contact.normals)} normals, not forces of shape {force.forces.shape}"
     for normal, pushed, moment in zip(contact.normals, force.forces, force.moments, strict=True):
@@ -85,10 +87,10 @@ def _force_fault(contact: Contact, force: ContactForce, allowed: float) -> str |
         if across > contact.friction * pressing + allowed * max(1.0, contact.friction):
             return f"{contact.name} rubs with {across:.6g} N, and {pressing:.6g} N press it"
     start = 0
-    for clause in contact.clauses:
-        pushing = np.linalg.norm(force.forces[start : start + len(clause)], axis=1) > allowed
-        if pushing.sum() > 1:
-            return f"{contact.name} pushes with several of its alternatives"
+    for number, clause in enumerate(contact.clauses):
+        pushing = np.flatnonzero(np.linalg.norm(force.forces[start : start + len(clause)], axis=1) > allowed)
+        if len(clause) > 1 and {*pushing.tolist()} - {taken.get((contact.name, number))}:
+            return f"{contact.name} pushes with an alternative that is not taken"
         start += len(clause)
     return None
 
@@ -156,18 +158,13 @@ def _resists(contact: Contact, normal: Point, motion: Vector) -> float:
     return along + contact.friction * slip + contact.provenance.normal_error * blur
 
 
-def unbalanced_fault(
-    unbalanced: Sequence[Unbalanced], contacts: Sequence[Contact], preloads: Mapping[str, float]
-) -> str | None:
-    """What is wrong with motions that should prove, for all branches, that nothing balances a wrench."""
-    scale = scale_of(contacts)
-    for motion in unbalanced:
-        excess = motion_surplus(motion, contacts, preloads)
-        if isinstance(excess, str):
-            return excess
-        unit = max([float(np.linalg.norm(_about(motion.wrench, scale))), *preloads.values()])
-        if not excess > unit * DEFAULT.near:
-            return f"the motion gains {excess:.1e} N, which proves nothing"
-        if not np.array_equal(motion.wrench, unbalanced[0].wrench):
-            return "its motions are about several wrenches"
-    return coverage_fault([motion.choice for motion in unbalanced], Case(contacts, contacts[0].dimension))
+def unbalanced_fault(motion: Unbalanced, contacts: Sequence[Contact], preloads: Mapping[str, float]) -> str | None:
+    """What is wrong with a motion that should prove, for one branch, that nothing balances a wrench."""
+    counts = {(c.name, k): len(clause) for c in contacts for k, clause in enumerate(c.clauses)}
+    if not all(0 <= alternative < counts.get((name, clause), 0) for name, clause, alternative in motion.choice):
+        return "its choice names alternatives that there are not"
+    excess = motion_surplus(motion, contacts, preloads)
+    if isinstance(excess, str):
+        return excess
+    unit = max([float(np.linalg.norm(_about(motion.wrench, scale_of(contacts)))), *preloads.values()])
+    return None if excess > unit * DEFAULT.near else f"the motion gains {excess:.1e} N, which proves nothing"

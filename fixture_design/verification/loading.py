@@ -186,7 +186,7 @@ def _ways(
         spans=nothing if branch is None else branch.spans,
         lines=nothing if branch is None else branch.lines,
         direction=direction,
-        leaving=0.0 if direction is None else max(0.0, cone.leaving(direction)),
+        leaving=0.0 if direction is None else _leaving(cone, direction),
         slides=() if direction is None else cone.slides(direction),
         length=length,
         against=against,
@@ -195,6 +195,12 @@ def _ways(
         branches=cone.weights if len(cone.weights) > 1 else (),
         tried=tried,
     )
+
+
+def _leaving(cone: DirectionCone, direction: Point) -> float:
+    """Zero up to rounding: it slides."""
+    value = cone.leaving(direction)
+    return value if value > cone.tolerances.zero else 0.0
 
 
 def _branch_of(cone: DirectionCone, direction: Point | None) -> WaysOfBranch | None:

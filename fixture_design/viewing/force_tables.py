@@ -118,7 +118,7 @@ def _certificates(use: LoadsHeld, verdict: Verdict) -> Markup:
         return joined([lead, table(["contact", "force on the part [N]", "size [N]"], rows, class_="numbers")])
     if isinstance(worst.proof, Unbalanced):
         moves = motion_in_words(worst.proof.motion, verdict.reference, verdict.length)
-        text = f"Certificate: the load drives the part {moves}; motion {numbers_text(worst.proof.motion)}, "
+        text = f"Certificate: the load moves the part ({moves}); motion {numbers_text(worst.proof.motion)}, "
         return joined([lead, tag("p", f"{text}surplus of work {worst.proof.surplus:.4g} J a unit of motion.")])
     return lead
 

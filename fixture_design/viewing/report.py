@@ -101,6 +101,9 @@ def _segments(layout: Layout, drawing: PartDrawing) -> Ends:
 
 
 def _inputs(verdict: Verdict, drawing: PartDrawing) -> Markup:
-    files = table(["input", "file", "SHA-256"], [[f.role, f.file.name, tag("code", f.sha256)] for f in drawing.files])
+    files = table(
+        ["input", "file", "SHA-256"],
+        [[f.role, f.file.name, tag("code", f.sha256 or "not there")] for f in drawing.files],
+    )
     versions = [[key, str(value)] for key, value in verdict.run.items()]
     return joined([files, table(["", ""], [*versions, ["drake", drawing.drake]])])

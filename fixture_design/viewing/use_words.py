@@ -23,6 +23,9 @@ from fixture_design.layout import (
 )
 from fixture_design.viewing.motion_words import direction_in_words, motion_in_words, place_in_words
 
+#: Factors of a load below this are none [-].
+_NOTHING = 1e-6
+
 #: Names in one sentence before it says "and so many more".
 _NAMES_SHOWN = 6
 
@@ -87,7 +90,7 @@ def load_in_words(load: LoadVerdict, reference: Point, length: float) -> str:
         found = f"{name} cannot be held"
         if load.reserve is not None and 0 < load.reserve[1] < 1:
             found += f" (up to {load.reserve[0]:.3g} times it)"
-        elif load.needed > 0 and isfinite(load.needed):
+        elif load.needed > 1 and isfinite(load.needed):
             found += f" (from {load.needed:.3g} times it)"
         if isinstance(load.proof, Unbalanced):
             found += f": it moves the part: {motion_in_words(load.proof.motion, reference, length)}"
@@ -106,7 +109,7 @@ def reserve_in_words(load: LoadVerdict) -> str:
         most = f"at least {low:.3g} times it"
     else:
         most = f"up to {low:.4g} times it"
-    return most if load.needed <= 0 else f"{most}, and needs {load.needed:.3g} times it"
+    return most if load.needed <= _NOTHING else f"{most}, and needs {load.needed:.3g} times it"
 
 
 def _first(load: LoadVerdict) -> str:

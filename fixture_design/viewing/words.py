@@ -17,7 +17,8 @@ def evidence_in_words(claim: str, finding: Finding, reference: Point, length: fl
     if finding.answer is None:
         return "no contacts"
     if finding.use is not None and (finding.answer is not Answer.UNDECIDED or finding.reason is None):
-        return use_in_words(finding.use, reference, length)
+        assumed = f"; {finding.reason}" if finding.reason and finding.answer is Answer.YES else ""
+        return use_in_words(finding.use, reference, length) + assumed
     if finding.answer is Answer.UNDECIDED:
         return finding.reason or "undecided"
     evidence = finding.evidence

@@ -33,6 +33,23 @@ def test_a_layout_is_not_overwritten(command: Callable, tmp_path: Path) -> None:
         assert path.read_text() == HOLDS
 
 
+def test_a_load_path_is_not_overwritten_by_the_report_of_another(command: Callable, tmp_path: Path) -> None:
+    (tmp_path / "path.csv").write_text("x,y,fx,fy\n0,0,1,oops\n")
+    stage = "stages: [{name: cut, active: [locator], loads: [cut], require: [holds_loads]}]\n"
+    bad = written(tmp_path, "bad", f"{HOLDS}loads: [{{name: cut, path: path.csv}}]\n{stage}")
+    ran = command("verify", bad, written(tmp_path, "good", HOLDS), "--report", tmp_path / "path.csv")
+    assert ran.code == 2
+    assert "is an input" in ran.err
+    assert "oops" in (tmp_path / "path.csv").read_text()
+
+
+def test_a_load_path_that_nobody_uses_need_not_be_there(command: Callable, tmp_path: Path) -> None:
+    text = f"{HOLDS}loads: [{{name: cut, path: missing.csv}}]\n"
+    ran = command("verify", written(tmp_path, "mine", text), "--report", tmp_path / "out.html")
+    assert ran.code == 0
+    assert "not there" in (tmp_path / "out.html").read_text()
+
+
 @pytest.mark.parametrize("out", ["missing/out.html", "."])
 def test_a_report_that_cannot_be_written(command: Callable, tmp_path: Path, out: str) -> None:
     ran = command("verify", written(tmp_path, "mine", HOLDS), "--report", tmp_path / out)

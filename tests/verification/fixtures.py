@@ -129,11 +129,10 @@ def _rocks(data: Data, plate: Plate) -> None:
 
 
 def _unseats(data: Data, plate: Plate) -> None:
-    """The clamp from above pushes outside the rests' triangle, without the others to help by friction."""
+    """The clamp from above pushes outside the rests' triangle."""
     x, y, z = plate.size
     element(data, "L3")["at"] = [0.5 * x, 0.5 * y, 0]
     element(data, "K1")["at"] = [0.5 * x, 0.95 * y, z]
-    data["friction"] = 0.0
 
 
 def _side_clamp_lifts(data: Data, plate: Plate) -> None:
@@ -144,7 +143,6 @@ def _side_clamp_lifts(data: Data, plate: Plate) -> None:
     element(data, "K2")["at"] = [0.5 * x, y, 0.95 * z]
     element(data, "K2")["preload"] = 5000.0
     element(data, "K1")["preload"] = 10.0
-    data["friction"] = 0.0
 
 
 def _reversed(data: Data, plate: Plate) -> None:
@@ -214,6 +212,13 @@ def _missing(data: Data, plate: Plate) -> None:
     data["elements"] = [e for e in data["elements"] if e["name"] != "L6"]
 
 
+def _clamp_in_the_way(data: Data, plate: Plate) -> None:
+    """Locators at the right and behind as well: the part goes straight up only, where the clamp K1 is."""
+    x, y, z = plate.size
+    data["elements"].insert(6, {"name": "W1", "role": "locator", "at": [x, 0.3 * y, z / 2], "tolerance": 1e-5})
+    data["elements"].insert(7, {"name": "W2", "role": "locator", "at": [0.3 * x, y, z / 2], "tolerance": 1e-5})
+
+
 def _in_line(data: Data, plate: Plate) -> None:
     """Three rests in one line: the part turns about it."""
     x = plate.size[0]
@@ -269,6 +274,7 @@ FLAWS: dict[str, Flaw] = {
     "jam": Flaw("placed", "strongly_accessible", ("both ways",), _jam),
     "jam, no straight way": Flaw("placed", "loadable", ("no straight way",), _jam),
     "overhang": Flaw("placed", "loadable", ("no straight way",), _overhang),
+    "clamp in the way": Flaw("placed", "loadable", ("K1 must be out of the way",), _clamp_in_the_way, ("yes",)),
     "rocks": Flaw("placed", "accurate", ("over-located", "R4"), _rocks, ("no", "undecided")),
     "pin too many": Flaw("placed", "accurate", ("over-located", "P1", "P2"), _pin_too_many, ("no", "undecided")),
     "close together": Flaw("placed", "accurate", ("edge",), _loose),

@@ -98,7 +98,11 @@ def test_the_bracket_with_a_fourth_tip_under_it() -> None:
     bore = feature([0.042, 0.02, 0.005], [0, 0, 1], 100 * UM)
     verdict = verify(
         replace(
-            bracket, elements=(*bracket.elements, fourth), key_features=(bore,), require={"locators": ("accurate",)}
+            bracket,
+            elements=(*bracket.elements, fourth),
+            key_features=(bore,),
+            stages=(),
+            require={"locators": ("accurate",)},
         )
     )
     found = verdict.groups["locators"].findings["accurate"].use
