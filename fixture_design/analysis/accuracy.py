@@ -26,7 +26,7 @@ from fixture_design.analysis.locating_rows import MAX_BRANCHES, locating_branche
 from fixture_design.analysis.normal_errors import blur
 from fixture_design.analysis.pressing import pressing_wrench, weight_as_given
 from fixture_design.arrays import Point, Vector
-from fixture_design.contacts import Contact
+from fixture_design.contacts import Contact, unit_normal
 from fixture_design.layout import Answer, FeatureError, Finding, Group, Layout, LocatingErrors, Rocking, element_name
 from fixture_design.tolerances import DEFAULT, SEATED, Tolerances
 
@@ -100,7 +100,7 @@ def _nothing_locates(layout: Layout, group: Group, reference: Point) -> Finding:
     """No: without any locator every feature moves along its own direction."""
     features, plane = [], len(reference)
     for feature in layout.key_features:
-        unit = feature.direction / np.linalg.norm(feature.direction)
+        unit = unit_normal(feature.direction)
         features.append(
             FeatureError(feature.name, feature.tolerance, np.inf, np.inf, np.inf, {}, (), feature.point, unit)
         )

@@ -12,7 +12,7 @@ from fixture_design.analysis.resting import Resting, resting
 from fixture_design.analysis.seat_errors import Displaced, SeatErrors, displaced, seat_errors, slack
 from fixture_design.analysis.seats import Seats, seats_of
 from fixture_design.arrays import Point, Rows, Vector, Weights
-from fixture_design.contacts import motion_about_origin
+from fixture_design.contacts import motion_about_origin, unit_normal
 from fixture_design.layout import FeatureError, KeyFeature, Rocking
 from fixture_design.tolerances import SEATED, Tolerances
 
@@ -63,7 +63,7 @@ def branch_accuracy(
     whole = len(seats.basis) == rows.rows.shape[1]
     if float(np.linalg.norm(rows.doubt)) > (SEATED if whole else 0.0) and (seats.groups or not whole):
         return Blurred("the contacts depend on each other, up to what their normals may be off")
-    units = [feature.direction / np.linalg.norm(feature.direction) for feature in features]
+    units = [unit_normal(feature.direction) for feature in features]
     targets = np.array([rows.target(f.point, unit) for f, unit in zip(features, units, strict=True)])
     free = _free(targets, seats, rows, tolerances)
     if free is None:

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from fixture_design.analysis import accurate
 from fixture_design.arrays import Vector
-from fixture_design.layout import Finding, Group, GroupVerdict, Layout
+from fixture_design.layout import Answer, Finding, Group, GroupVerdict, Layout
 from fixture_design.tolerances import Tolerances
+from fixture_design.verification.accuracy_proofs import accuracy_fault
 from fixture_design.verification.force_questions import holds_loads, seated
 from fixture_design.verification.found import FoundContacts
 from fixture_design.verification.loading import loadable
@@ -22,7 +23,11 @@ def _accurate(layout: Layout, group: Group, found: FoundContacts, tolerances: To
         known = weight_of(of, found)
         return None if isinstance(known, str) else known.wrench
 
-    return accurate(layout, group, found.report.reference, tolerances, weight)
+    finding = accurate(layout, group, found.report.reference, tolerances, weight)
+    # errors of normals and alternatives together may blur a displacement that is found; what does not check is not said
+    if finding.answer is not Answer.UNDECIDED and (fault := accuracy_fault(finding, group.contacts)):
+        return replace(finding, answer=Answer.UNDECIDED, reason=f"the errors found are not confirmed: {fault}")
+    return finding
 
 
 #: In the order they are reported.
