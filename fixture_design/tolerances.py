@@ -134,3 +134,12 @@ OFF_SURFACE = 1e-9
 
 #: Sine of the angle between a tip's direction and the surface's normal below which its projection means nothing [-].
 ALONG_NORMAL = 1e-3
+
+#: Distances on a modular plate that differ by less, relative to the part's size, are equal [-]: poses keep ten digits.
+PLATE_TIE = 1e-9
+
+#: Sines between the normals of three edges that are all below this: the edges are parallel and locate nothing [-].
+PARALLEL_EDGES = 1e-9
+
+#: A modular fixture holds its part if its margin is above this [-]: what real fixtures have, and far above any tie.
+HELD = 1e-6
