@@ -42,8 +42,12 @@ def brute_force(polygon: np.ndarray, plate: Plate, edge_margin: float) -> list[K
     size = float(np.linalg.norm(np.ptp(polygon, axis=0)))
     tie = PLATE_TIE * size
     steps = list(product(range(1 - plate.columns, plate.columns), range(1 - plate.rows, plate.rows)))
-    patterns = [[(0, 0), second, third] for second in steps for third in steps]
+    # half a turn of any plate takes second to -second
+    patterns = [[(0, 0), second, third] for second in steps for third in steps if second > (0, 0)]
     patterns = [holes for holes in patterns if len(set(holes)) == 3 and fits(holes, plate)]
+    # centres of tips that touch the part are no further apart than its corners and two radii
+    widest = max(hypot(a[0] - b[0], a[1] - b[1]) for a in corners for b in corners) + 2 * plate.locator_radius + tie
+    patterns = [holes for holes in patterns if widest >= spread(holes) * plate.pitch]
     keys: list[Key] = []
     for triple in combinations_with_replacement(range(len(edges)), 3):
         contacts = Contacts([edges[k] for k in triple], plate.locator_radius)
@@ -58,6 +62,10 @@ def brute_force(polygon: np.ndarray, plate: Plate, edge_margin: float) -> list[K
 def fits(holes: list[tuple[int, int]], plate: Plate) -> bool:
     columns, rows = [h[0] for h in holes], [h[1] for h in holes]
     return max(columns) - min(columns) < plate.columns and max(rows) - min(rows) < plate.rows
+
+
+def spread(holes: list[tuple[int, int]]) -> float:
+    return max(hypot(a[0] - b[0], a[1] - b[1]) for a in holes for b in holes)
 
 
 class Contacts:
