@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from jaxtyping import Float
 
@@ -12,8 +10,6 @@ from fixture_design.design.plates.closure import clamp_weights, planar_rows
 from fixture_design.design.plates.fixtures import Fixtures
 from fixture_design.design.plates.outline import Outline
 from fixture_design.errors import InputError, UnknownNameError
-
-Quality = Literal["margin", "locating_error", "reaction"]
 
 
 def locating_error(fixtures: Fixtures) -> Weights:
@@ -41,7 +37,7 @@ def contact_rows(fixtures: Fixtures) -> Float[np.ndarray, "k 4 3"]:
     return planar_rows(fixtures.points - center[:, None], fixtures.normals, outline.length)
 
 
-def best_fixture(fixtures: Fixtures, by: Quality = "margin") -> int:
+def best_fixture(fixtures: Fixtures, by: str = "margin") -> int:
     """Index of the best fixture; the first one among equals.
 
     Args:
