@@ -39,10 +39,11 @@ def candidate_triples(grown: GrownEdges, plate: Plate, tie: float) -> Iterator[T
     waiting: list[Triples] = []
     for first in range(len(grown.edges)):
         for second in range(first, len(grown.edges)):
-            waiting.append(_with_third(first, second, near, plate))
-            if sum(len(triples.edges) for triples in waiting) >= BATCH:
-                yield _joined(waiting)
-                waiting = []
+            for triples in _with_third(first, second, near, plate):
+                waiting.append(triples)
+                if sum(len(triples.edges) for triples in waiting) >= BATCH:
+                    yield _joined(waiting)
+                    waiting = []
     if waiting:
         yield _joined(waiting)
 
@@ -64,24 +65,25 @@ def _annuli(grown: GrownEdges, plate: Plate, tie: float) -> Bool[np.ndarray, "n 
     )
 
 
-def _with_third(first: int, second: int, near: Bool[np.ndarray, "n n m m"], plate: Plate) -> Triples:
-    """All candidates with these two edges in front."""
+def _with_third(first: int, second: int, near: Bool[np.ndarray, "n n m m"], plate: Plate) -> Iterator[Triples]:
+    """All candidates with these two edges in front, a few second holes at a time."""
     reach = plate.reach
     seconds = np.argwhere(near[first, second, : reach + 1, : reach + 1])
     seconds = seconds[seconds[:, 0] > 0]
     thirds = np.argwhere(near[first, second:])
+    if not (len(seconds) and len(thirds)):
+        return
     edges, holes = thirds[:, 0] + second, thirds[:, 1:]
     holes = np.where(holes > reach, holes - (2 * reach + 1), holes)
-    steps = holes[None] - seconds[:, None]
-    low = np.minimum(np.minimum(holes, 0)[None], seconds[:, None])
-    high = np.maximum(np.maximum(holes, 0)[None], seconds[:, None])
-    fits = plate.holds(high - low)
-    left, right = np.nonzero(fits)
-    step = steps[left, right]
-    kept = near[second, edges[right], step[:, 0], step[:, 1]]
-    left, right = left[kept], right[kept]
-    named = np.column_stack([np.full(len(right), first), np.full(len(right), second), edges[right]])
-    return Triples(named, np.stack([np.zeros_like(holes[right]), seconds[left], holes[right]], axis=1))
+    for some in np.array_split(seconds, -(-len(seconds) * len(thirds) // (4 * BATCH))):
+        low = np.minimum(np.minimum(holes, 0), some[:, None])
+        high = np.maximum(np.maximum(holes, 0), some[:, None])
+        left, right = np.nonzero(plate.holds(high - low))
+        step = holes[right] - some[left]
+        kept = near[second, edges[right], step[:, 0], step[:, 1]]
+        left, right = left[kept], right[kept]
+        named = np.column_stack([np.full(len(right), first), np.full(len(right), second), edges[right]])
+        yield Triples(named, np.stack([np.zeros_like(holes[right]), some[left], holes[right]], axis=1))
 
 
 def _joined(parts: list[Triples]) -> Triples:

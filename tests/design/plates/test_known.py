@@ -40,8 +40,8 @@ def test_a_square_between_holes_by_hand() -> None:
     Two normals of adjacent sides do not hold it, so two tips are on opposite sides, and out of line with each other. If
     the square stands straight, its sides are at 0.25 from columns and rows, and only one column passes through it:
     all tips on opposite sides are in line. So their holes are further apart than 2: sqrt(5) is next, at an angle of
-    cos(a) = 2 / sqrt(5) from square, which turns the square as the triangle of sides 3, 4, 5. Each way to do this occurs
-    for the four sides to begin with, and mirrored.
+    cos(a) = 2 / sqrt(5) from square, which turns the square as the triangle of sides 3, 4, 5. Each way to do this
+    occurs for the four sides to begin with, and mirrored.
     """
     found = enumerate_fixtures(SPECIAL["square with room for tips"], Plate(1.0, 3, 4, 0.25))
     assert len(found) == 4 * 2 * 2
