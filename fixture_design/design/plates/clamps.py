@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from fixture_design.arrays import Indices, Weights
 from fixture_design.design.plates.grown_edges import GrownEdges
@@ -47,49 +47,75 @@ def clamp_candidates(poses: Poses, grown: GrownEdges, plate: Plate, tie: float) 
     Args:
         grown: by the radius of the clamp's tip.
     """
-    every = np.arange(len(grown.edges))
-    starts = grown.centers(every, grown.first)
-    span = grown.last - grown.first
-    turns = poses.turns[:, None]
-    p_W = in_world(starts[None] + poses.shifts[:, None], turns)
-    along_W, out_W = in_world(grown.tangents[None], turns), in_world(grown.normals[None], turns)
-    parts = [_on_lines(axis, p_W, along_W, out_W, span, poses.holes, plate, tie) for axis in (0, 1)]
+    edges_W = _EdgesInWorld.of(poses, grown)
+    parts = [_along(axis, edges_W, poses.holes, plate, tie) for axis in (0, 1)]
     clamps = Clamps(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))
     holes = np.concatenate([poses.holes[clamps.pose], clamps.holes[:, None]], axis=1)
     fits = plate.holds(holes.max(axis=1) - holes.min(axis=1))
-    from_start = grown.first[clamps.edges] + clamps.along
-    placed = Clamps(clamps.pose, clamps.edges, clamps.holes, clamps.directions, from_start)
-    return placed.kept(fits & (clamps.along > 0) & (clamps.along < span[clamps.edges]))
+    first, last = grown.first[clamps.edges], grown.last[clamps.edges]
+    return clamps.kept(fits & (first < clamps.along) & (clamps.along < last))
 
 
-def _on_lines(
-    axis: int,
-    p_W: Float[np.ndarray, "k n 2"],
-    along_W: Float[np.ndarray, "k n 2"],
-    out_W: Float[np.ndarray, "k n 2"],
-    span: Weights,
-    holes: Int[np.ndarray, "k 3 2"],
-    plate: Plate,
-    tie: float,
+@dataclass(frozen=True, eq=False)
+class _EdgesInWorld:
+    """The grown edges in every pose, from the first locator's hole.
+
+    Attributes:
+        starts, ends: of where the tip's centre may be, shape (k, n, 2) [m].
+        tangents, normals: unit vectors, shape (k, n, 2).
+        first: how far along their edges the starts are, shape (n,) [m].
+    """
+
+    starts: np.ndarray
+    ends: np.ndarray
+    tangents: np.ndarray
+    normals: np.ndarray
+    first: Weights
+
+    @classmethod
+    def of(cls, poses: Poses, grown: GrownEdges) -> _EdgesInWorld:
+        every, turns = np.arange(len(grown.edges)), poses.turns[:, None]
+        starts, ends = (grown.centers(every, along) + poses.shifts[:, None] for along in (grown.first, grown.last))
+        return cls(
+            starts=in_world(starts, turns),
+            ends=in_world(ends, turns),
+            tangents=in_world(grown.tangents[None], turns),
+            normals=in_world(grown.normals[None], turns),
+            first=grown.first,
+        )
+
+
+def _along(
+    axis: int, edges_W: _EdgesInWorld, holes: Int[np.ndarray, "k 3 2"], plate: Plate, tie: float
 ) -> tuple[np.ndarray, ...]:
-    """Clamps whose plunger moves along one axis of the grid; ``along`` counts from where the grown edge starts."""
-    clamp, pitch, line = plate.plunger, plate.pitch, 1 - axis
-    ends = np.stack([p_W[..., line], p_W[..., line] + span * along_W[..., line]]) / pitch
-    lowest = np.maximum(np.ceil(ends.min(axis=0)), holes[..., line].max(axis=1)[:, None] - plate.reach)
-    highest = np.minimum(np.floor(ends.max(axis=0)), holes[..., line].min(axis=1)[:, None] + plate.reach)
-    pushed = np.abs(out_W[..., axis]) >= clamp.least_push - PLATE_TIE
+    """Clamps whose plunger moves along one axis of the grid, with tips on the lines of the edges."""
+    clamp, pitch, other = plate.plunger, plate.pitch, 1 - axis
+    pose, edge, line = _crossings(axis, edges_W, holes, plate)
+    start, tangent = edges_W.starts[pose, edge], edges_W.tangents[pose, edge]
+    from_start = (line * pitch - start[:, other]) / tangent[:, other]
+    out = np.sign(edges_W.normals[pose, edge, axis]).astype(np.int64)
+    tip = out * (start[:, axis] + from_start * tangent[:, axis])
+    base = np.ceil((tip + clamp.shortest - tie) / pitch)
+    reached = base * pitch - tip <= clamp.longest + tie
+    base = out * base.astype(np.int64)
+    spot = np.column_stack([base, line] if axis == 0 else [line, base])
+    way = np.column_stack([-out, 0 * out] if axis == 0 else [0 * out, -out])
+    columns = (pose, edge, spot, way, edges_W.first[edge] + from_start)
+    return tuple(column[reached] for column in columns)
+
+
+def _crossings(
+    axis: int, edges_W: _EdgesInWorld, holes: Int[np.ndarray, "k 3 2"], plate: Plate
+) -> tuple[Indices, Indices, Indices]:
+    """Which poses, grown edges and lines of holes along an axis cross, where the plunger is not too aslant for that."""
+    other = 1 - axis
+    ends = np.stack([edges_W.starts[..., other], edges_W.ends[..., other]]) / plate.pitch
+    lowest = np.maximum(np.ceil(ends.min(axis=0)), holes[..., other].max(axis=1)[:, None] - plate.reach)
+    highest = np.minimum(np.floor(ends.max(axis=0)), holes[..., other].min(axis=1)[:, None] + plate.reach)
+    pushed = np.abs(edges_W.normals[..., axis]) >= plate.plunger.least_push - PLATE_TIE
     counts = np.where(pushed, np.maximum(highest - lowest + 1, 0), 0).astype(np.int64)
     pose, edge = np.nonzero(counts)
     counts = counts[pose, edge]
     pose, edge = np.repeat(pose, counts), np.repeat(edge, counts)
-    within = np.arange(len(pose)) - np.repeat(np.cumsum(counts) - counts, counts)
-    lines = lowest[pose, edge] + within
-    along = (lines * pitch - p_W[pose, edge, line]) / along_W[pose, edge, line]
-    tip = p_W[pose, edge, axis] + along * along_W[pose, edge, axis]
-    out = np.sign(out_W[pose, edge, axis])
-    base = np.ceil((out * tip + clamp.shortest - tie) / pitch)
-    reached = base * pitch - out * tip <= clamp.longest + tie
-    spot = np.stack([out * base, lines] if axis == 0 else [lines, out * base], axis=1)
-    way = np.stack([-out, 0 * out] if axis == 0 else [0 * out, -out], axis=1)
-    columns = (pose, edge, spot.astype(np.int64), way.astype(np.int64), along)
-    return tuple(column[reached] for column in columns)
+    step = np.arange(len(pose)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return pose, edge, lowest[pose, edge].astype(np.int64) + step

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from fixture_design.arrays import Weights
+from fixture_design.arrays import Indices, Weights
 from fixture_design.design.plates.grown_edges import GrownEdges
 from fixture_design.design.plates.triples import Triples, unique_rows
 from fixture_design.tolerances import PARALLEL_EDGES
@@ -46,6 +46,23 @@ class Poses:
         return Poses(*(column[which] for column in columns))
 
 
+@dataclass(frozen=True, eq=False)
+class _Families:
+    """Three grown edges each, whose normals span the plane.
+
+    Attributes:
+        edges: shape (t, 3).  normals: shape (t, 3, 2).  offsets: c, shape (t, 3) [m].
+        weights: l with sum l_i n_i = 0, shape (t, 3).
+        inverses: of the three normals as rows, shape (t, 2, 3).
+    """
+
+    edges: Int[np.ndarray, "t 3"]
+    normals: Float[np.ndarray, "t 3 2"]
+    offsets: Float[np.ndarray, "t 3"]
+    weights: Float[np.ndarray, "t 3"]
+    inverses: Float[np.ndarray, "t 2 3"]
+
+
 def solve_poses(triples: Triples, grown: GrownEdges, pitch: float) -> Poses:
     """All poses of the candidates, with each locator within its grown edge and locators of one edge in their order.
 
@@ -53,31 +70,34 @@ def solve_poses(triples: Triples, grown: GrownEdges, pitch: float) -> Poses:
     double roots, where the three normals meet in a point and leave it free to turn about that: neither locates the
     part, and no clamp can hold it with three contacts of rank two.
     """
-    families, which = unique_rows(triples.edges, len(grown.edges))
-    normals, offsets = grown.normals[families], grown.offsets[families]
-    weights = _cross(normals[:, [1, 2, 0]], normals[:, [2, 0, 1]])
-    usable = np.abs(weights).max(axis=1) > PARALLEL_EDGES
-    inverses = np.zeros((len(families), 2, 3))
-    inverses[usable] = np.linalg.pinv(normals[usable])
-    rows = np.flatnonzero(usable[which])
-    which, h = which[rows], pitch * triples.holes[rows]
-    dots = np.einsum("kij,kij->ki", normals[which], h)
-    crosses = _cross(normals[which], h)
-    index, turns = _roots(
-        np.einsum("ki,ki->k", weights[which], dots),
-        np.einsum("ki,ki->k", weights[which], crosses),
-        np.einsum("ti,ti->t", weights, offsets)[which],
-    )
-    rows, which, h = rows[index], which[index], h[index]
-    gaps = turns[:, :1] * dots[index] + turns[:, 1:] * crosses[index] - offsets[which]
-    shifts = np.einsum("kij,kj->ki", inverses[which], gaps)
-    centers = in_part(h, turns[:, None]) - shifts[:, None]
-    edges = triples.edges[rows]
-    along = np.einsum("kij,kij->ki", centers - grown.starts[edges], grown.tangents[edges])
-    poses = Poses(edges, triples.holes[rows], turns, shifts, centers, along)
+    families, rows, which = _families(triples, grown)
+    h = pitch * triples.holes[rows]
+    normals, weights, offsets = families.normals[which], families.weights[which], families.offsets[which]
+    dots, crosses = (normals * h).sum(axis=2), _cross(normals, h)
+    sums = ((weights * terms).sum(axis=1) for terms in (dots, crosses, offsets))
+    index, turns = _roots(*sums)
+    gaps = turns[:, :1] * dots[index] + turns[:, 1:] * crosses[index] - offsets[index]
+    shifts = np.einsum("kij,kj->ki", families.inverses[which[index]], gaps)
+    centers = in_part(h[index], turns[:, None]) - shifts[:, None]
+    edges = families.edges[which[index]]
+    along = ((centers - grown.starts[edges]) * grown.tangents[edges]).sum(axis=2)
     inside = ((grown.first[edges] < along) & (along < grown.last[edges])).all(axis=1)
     in_order = ((edges[:, 1:] > edges[:, :-1]) | (along[:, 1:] > along[:, :-1])).all(axis=1)
-    return poses.kept(inside & in_order)
+    return Poses(edges, triples.holes[rows[index]], turns, shifts, centers, along).kept(inside & in_order)
+
+
+def _families(triples: Triples, grown: GrownEdges) -> tuple[_Families, Indices, Indices]:
+    """The edge triples that are not parallel; which candidates have one, and which one those have."""
+    edges, which = unique_rows(triples.edges, len(grown.edges))
+    normals = grown.normals[edges]
+    weights = _cross(normals[:, [1, 2, 0]], normals[:, [2, 0, 1]])
+    spanning = np.abs(weights).max(axis=1) > PARALLEL_EDGES
+    kept = np.flatnonzero(spanning)
+    families = _Families(
+        edges[kept], normals[kept], grown.offsets[edges[kept]], weights[kept], np.linalg.pinv(normals[kept])
+    )
+    rows = np.flatnonzero(spanning[which])
+    return families, rows, (np.cumsum(spanning) - 1)[which[rows]]
 
 
 def _roots(a: Weights, b: Weights, c: Weights) -> tuple[np.ndarray, Float[np.ndarray, "k 2"]]:
