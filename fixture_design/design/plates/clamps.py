@@ -112,7 +112,7 @@ def _crossings(
     ends = np.stack([edges_W.starts[..., other], edges_W.ends[..., other]]) / plate.pitch
     lowest = np.maximum(np.ceil(ends.min(axis=0)), holes[..., other].max(axis=1)[:, None] - plate.reach)
     highest = np.minimum(np.floor(ends.max(axis=0)), holes[..., other].min(axis=1)[:, None] + plate.reach)
-    pushed = np.abs(edges_W.normals[..., axis]) >= plate.plunger.least_push - PLATE_TIE
+    pushed = np.abs(edges_W.normals[..., axis]) >= plate.plunger.least_push * (1 - PLATE_TIE)
     counts = np.where(pushed, np.maximum(highest - lowest + 1, 0), 0).astype(np.int64)
     pose, edge = np.nonzero(counts)
     counts = counts[pose, edge]

@@ -38,7 +38,7 @@ def enumerate_fixtures(polygon: ArrayLike, plate: Plate, edge_margin: float = 0.
         edge_margin: least distance of a contact from the ends of its edge [m].
 
     Returns:
-        fixtures in the order of their edges; possibly none.
+        fixtures, in the same order each time; possibly none.
 
     Raises:
         GeometryError: no simple counter-clockwise polygon.  InputError: the margin is negative or not a number.

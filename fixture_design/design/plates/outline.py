@@ -29,7 +29,11 @@ class Outline:
     @classmethod
     def of(cls, polygon: ArrayLike) -> Outline:
         """The outline of vertices given as an array or as lists."""
-        return cls(read_only(polygon))
+        try:
+            vertices = read_only(polygon)
+        except (TypeError, ValueError) as error:
+            raise GeometryError("a polygon is a list of vertices [x, y]", found=f"{polygon!r:.80}") from error
+        return cls(vertices)
 
     def __post_init__(self) -> None:
         _check(self.vertices)

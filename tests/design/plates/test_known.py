@@ -76,6 +76,8 @@ def test_reach_of_the_clamp() -> None:
     ("polygon", "says"),
     [
         ([[0, 0], [1, 0]], "three or more"),
+        ([[0, 0], [1, 0], [1]], "list of vertices"),
+        ([[0, 0], [1, 0], ["a", "b"]], "list of vertices"),
         ([[0, 0], [1, 0], [1, np.nan]], "not finite"),
         ([[0, 0], [1, 0], [1, 0], [0, 1]], "twice"),
         ([[0, 0], [0, 1], [1, 0]], "clockwise"),
@@ -83,7 +85,7 @@ def test_reach_of_the_clamp() -> None:
         ([[0, 0], [1, 0], [2, 1e-12]], "no area"),
     ],
 )
-def test_polygons_that_are_none(polygon: list[list[float]], says: str) -> None:
+def test_polygons_that_are_none(polygon: list, says: str) -> None:
     with pytest.raises(GeometryError, match=says):
         enumerate_fixtures(polygon, Plate(1.0, 3, 3, 0.1))
 
