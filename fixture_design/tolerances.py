@@ -166,3 +166,12 @@ OPPOSED_WALLS = 2 * COPLANAR_ANGLE
 #: Contacts whose smallest singular value is below this hold no part [-]: it would turn by the error of a tip over its
 #: lever, 1e-4 and more, divided by this. What facets leave of parallel walls is far below.
 SEATED = 1e-5
+
+#: Distances on a modular plate that differ by less, relative to the part's size, are equal [-]: poses keep ten digits.
+PLATE_TIE = 1e-9
+
+#: Sines between the normals of three edges that are all below this: the edges are parallel and locate nothing [-].
+PARALLEL_EDGES = 1e-9
+
+#: A modular fixture holds its part if its margin is above this [-]: what real fixtures have, and far above any tie.
+HELD = 1e-6

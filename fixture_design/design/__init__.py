@@ -1,0 +1,1 @@
+"""Design: where the locators and clamps go."""
