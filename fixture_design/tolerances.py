@@ -134,3 +134,13 @@ OFF_SURFACE = 1e-9
 
 #: Sine of the angle between a tip's direction and the surface's normal below which its projection means nothing [-].
 ALONG_NORMAL = 1e-3
+
+#: Coefficient of friction that design takes where a part cannot be closed without [-]: steel on steel, not greased.
+USUAL_FRICTION = 0.2
+
+#: How far off the normals of candidates may be that design tries, one after the other [rad]: plane facets as they are,
+#: round surfaces that were fitted well, then what still leaves a margin; what is known less well decides nothing.
+NORMALS_KNOWN_TO = (0.0, 1e-3, 2e-2)
+
+#: A margin of closure that is good enough, so that accuracy counts before a larger one [-].
+GOOD_MARGIN = 1e-3
