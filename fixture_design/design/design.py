@@ -63,7 +63,7 @@ def design(
     """
     ways = ways or _ways_of(task)
     progress("candidates", 0.0)
-    candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale, task.friction)
+    candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)
     best: DesignResult | None = None
     for plan in _plans(task, ways):
         for some in _by_certainty(candidates):
@@ -137,7 +137,7 @@ def _designed(
 ) -> DesignResult:
     """One attempt: among these candidates, with this plan."""
     locators, everything = plan.require.get("locators", ()), plan.require.get("all", ())
-    leaves = bool(set(_LEAVING) & set(locators)) or task.require is None
+    leaves = bool(set(_LEAVING) & set(locators)) or task.require is None or task.limits.loading is not None
     start = begun(task, candidates.with_friction(plan.friction), ways, leaves, keep_all)
     closes = "with friction" if "force_closure" in everything else None
     problem = Problem(

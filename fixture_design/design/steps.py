@@ -46,15 +46,16 @@ def additions(problem: Problem, locators: Indices, clamps: Indices, names: dict[
     """Why each new element is there, one after the other: the motion that was free before it, and is not after it.
 
     Args:
-        names: of all elements, by candidate; those that the problem keeps are there from the beginning.
+        names: of all elements, by candidate; those of the start are there from the beginning.
     """
     steps, here = [], [*problem.locators]
     for locator in (int(index) for index in locators if index not in problem.locators):
         motion = _unnoticed(problem, here, locator)
         steps.append(_step(problem, names[locator], "unnoticed", motion))
         here.append(locator)
-    here += problem.clamps
-    for clamp in (int(index) for index in clamps if index not in problem.clamps):
+    before = [int(index) for index in clamps if problem.candidates.elements[index] is not None]
+    here += before
+    for clamp in (int(index) for index in clamps if index not in before):
         motion = _stopped(problem, here, clamp)
         steps.append(_step(problem, names[clamp], "free", motion))
         here.append(clamp)

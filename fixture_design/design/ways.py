@@ -18,7 +18,6 @@ Progress = Callable[[str, float], None]
 class Ways(Protocol):
     """How a part is touched, and how a layout is judged."""
 
-    @property
     def scale(self) -> Scale:
         """Centre of the part in W and half the diagonal of its box."""
         ...

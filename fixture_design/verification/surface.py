@@ -76,7 +76,6 @@ class PartSurface:
     def notes(self) -> tuple[str, ...]:
         return self.geometry.notes
 
-    @property
     def scale(self) -> Scale:
         """Centre of the part's box in W and half its diagonal, as margins are reported."""
         center = self.part.pose.points(np.asarray(self.geometry.box_center)[None])[0]
@@ -99,7 +98,7 @@ class PartSurface:
         found, last = None, len(_EDGE_MARGINS) - 1
         for number, part in enumerate(_EDGE_MARGINS):
             try:
-                found = self._spots(rules, part * self.scale.length, seed)
+                found = self._spots(rules, part * self.scale().length, seed)
             except GeometryError:
                 if number == last:  # not even without a margin
                     raise
@@ -139,7 +138,7 @@ class PartSurface:
 
     def _spacing(self) -> float:
         """So that a part gets about as many candidates as are enough, whatever its size."""
-        if len(self.scale.reference) == 2:
+        if len(self.scale().reference) == 2:
             edges = np.linalg.norm(self.geometry.edges, axis=1)  # type: ignore[union-attr]
             return float(edges.sum()) / _PLANAR
         corners = self.geometry.vertices[self.geometry.triangles]  # type: ignore[union-attr]

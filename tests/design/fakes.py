@@ -32,7 +32,6 @@ class Fake:
     given: Spots
     answers: frozenset[str] = field(default=frozenset({"deterministic", "strongly_accessible", "form_closure"}))
 
-    @property
     def scale(self) -> Scale:
         low, high = self.given.points.min(axis=0), self.given.points.max(axis=0)
         return Scale((low + high) / 2, float(np.linalg.norm(high - low)) / 2)
@@ -124,4 +123,4 @@ def task(spots: Spots, **keys: object) -> Task:
 
 
 def candidates(spots: Spots, friction: float = 0.0) -> Candidates:
-    return Candidates.of(spots, Fake(spots).scale, friction)
+    return Candidates.of(spots, Fake(spots).scale(), friction)
