@@ -30,6 +30,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield _bound_in_words(result.bound)
     if result.out is not None:
         yield f"the part comes out along [{', '.join(f'{x:.3g}' for x in result.out)}]"
+    if result.accuracy is not None and result.best_accuracy is not None:
+        yield f"accuracy {_accuracy_in_words(result.accuracy, result.best_accuracy)}"
     if result.margin is not None:
         yield f"margin of closure {result.margin:.3g}"
     for note in result.notes:
@@ -72,3 +74,10 @@ def _bound_in_words(bound: Bound) -> str:
     if bound.found is None:
         return f"{least} are needed {among}"
     return f"{bound.found} elements; {least} are needed {among}: {bound.gap} more than proven"
+
+
+def _accuracy_in_words(accuracy: float, best: float) -> str:
+    """How far it may be from the best one."""
+    return (
+        f"{accuracy:.4g}, and no locators among these candidates have less than {best:.4g} ({accuracy / best - 1:.1%})"
+    )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fixture_design.arrays import Mask
 from fixture_design.contacts import face_vectors, unit_normal
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import layout_of, named
@@ -163,7 +164,29 @@ def _designed(
     bound = _bound(problem, outcome)
     if outcome.found is None or _refused(task, outcome.found):
         return _without_layout(problem, outcome, bound, start)
-    return _drawn_up(task, ways, problem, outcome.found, bound, start, plan)
+    try:
+        return _drawn_up(task, ways, problem, outcome, bound, start, plan)
+    except GeometryError:
+        useless = _useless(task, ways, problem, outcome.found)
+        if not useless.any():
+            raise
+        kept = candidates.chosen(~useless[: len(candidates)])
+        return _designed(task, ways, kept, plan, keep_all, seed, progress, cancelled)
+
+
+def _useless(task: Task, ways: Ways, problem: Problem, found: Found) -> Mask:
+    """Candidates that turn out not to be places for an element (where solids overlap), shape (n,)."""
+    useless = np.zeros(len(problem.candidates), dtype=bool)
+    for index in np.concatenate([found.locators, found.clamps]).tolist():
+        if problem.candidates.elements[index] is None:
+            place = np.array([index])
+            names = {index: "candidate"}
+            alone = layout_of(replace(task, start=None), problem.candidates, place, place[:0], names, {}, 0.0)
+            try:
+                ways.contacts(alone)
+            except GeometryError:
+                useless[index] = True
+    return useless
 
 
 def _features(task: Task, candidates: Candidates) -> Features | None:
@@ -218,9 +241,11 @@ def _without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, sta
 
 
 def _drawn_up(
-    task: Task, ways: Ways, problem: Problem, found: Found, bound: Bound | None, start: Start, plan: _Plan
+    task: Task, ways: Ways, problem: Problem, outcome: Outcome, bound: Bound | None, start: Start, plan: _Plan
 ) -> DesignResult:
     """The layout of what was found, with its verdict and its record."""
+    found = outcome.found
+    assert found is not None
     taken = [element.name for element in problem.candidates.elements if element is not None]
     names = named(problem.candidates, found.locators, found.clamps, taken)
     layout = layout_of(task, problem.candidates, found.locators, found.clamps, names, plan.require, plan.friction)
@@ -235,7 +260,7 @@ def _drawn_up(
         # a layout that fails does not prove that none holds
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(problem, found.locators, found.clamps, names)), bound,
-        found.out, found.accuracy, None, closure.margin if closure and problem.closes else None,
+        found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
         reason=reason, notes=tuple(_notes(task)),
     )  # fmt: skip
 

@@ -25,6 +25,9 @@ from fixture_design.tolerances import DEFAULT, Tolerances
 #: Cuts after which the search says what it knows so far.
 MOST_CUTS = 400
 
+#: Candidates that may fail to join the set of a cut, one after the other, before it is taken as it is.
+_FAILURES = 8
+
 
 @dataclass(frozen=True, eq=False)
 class Hitting:
@@ -127,21 +130,24 @@ def _strongest(
     """The motion of a largest set that has ``cover`` and still leaves something free, and who stops it.
 
     Candidates that the motion does not meet join at once; each other one if the set still does not close with it,
-    which most often gives a new motion that others do not meet either.
+    which most often gives a new motion that others do not meet either. After some that could not join the rest is left
+    out: a cut need not be the strongest to be right.
     """
     cut = stops(rows[pool], motion, tolerances.near)
     cut[cover] = False
-    tried = np.zeros(len(pool), dtype=bool)
-    while (cut & ~tried).any():
+    tried, failures = np.zeros(len(pool), dtype=bool), 0
+    inside = flat(rows, np.concatenate([base, pool[~cut]]))
+    while failures < _FAILURES and (cut & ~tried).any():
         # the one that is stopped least is the likeliest to leave a motion free
         left = np.flatnonzero(cut & ~tried)
         values = (rows[pool[left]] @ motion).max(axis=1)
         candidate = int(left[np.argmin(values)])
         tried[candidate] = True
-        joined = np.concatenate([base, pool[~cut], pool[[candidate]]])
-        other = free_motion(flat(rows, joined), tolerances)
+        other = free_motion(np.vstack([inside, rows[pool[candidate]]]), tolerances)
+        failures += 1
         if other is not None:
-            motion = other
+            motion, failures = other, 0
             cut &= stops(rows[pool], motion, tolerances.near)
             cut[candidate] = False
+            inside = flat(rows, np.concatenate([base, pool[~cut]]))
     return motion, cut

@@ -7,12 +7,13 @@ what is there already; so the smallest bound of all cells proves the number of e
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from fixture_design.arrays import Indices, Point
+from fixture_design.design.accuracy_bounds import largest_volume, least_error
 from fixture_design.design.clamping import closes, held_best, locators_for, margins
 from fixture_design.design.closing import fewest_closing
 from fixture_design.design.hitting import fewest_stopping
@@ -62,17 +63,18 @@ class Outcome:
 
     Attributes:
         least_clamps: no layout that does what is asked has fewer; None where none could be bounded.
-        complete: whether the bound holds for all directions, not only for those tried.
+        complete: whether the bounds hold for all directions, not only for those tried.
+        best_accuracy: no locators with as few clamps have a smaller one; None where there is no layout.
     """
 
     found: Found | None
     least_clamps: int | None
     complete: bool
-    regions: tuple[Region, ...] = field(default=(), repr=False)
+    best_accuracy: float | None = None
 
 
 def search(problem: Problem, seed: int, progress: Progress = lambda words, part: None) -> Outcome:
-    """The best layout that the search meets, with a lower bound of the number of clamps."""
+    """The best layout that the search meets, with bounds of the number of clamps and of the accuracy."""
     regions, complete = regions_of(problem, seed)
     best: Found | None = None
     for number, region in enumerate(regions):
@@ -81,29 +83,28 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
         progress(f"way out {number + 1} of {len(regions)}", number / len(regions))
         best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
     least = min((region.bound for region in regions), default=None)
-    return Outcome(best, least, complete, tuple(regions))
+    return Outcome(best, least, complete, None if best is None else _best_accuracy(problem, regions, len(best.clamps)))
 
 
 def _better_within(problem: Problem, region: Region, rng: np.random.Generator, best: Found | None) -> Found | None:
     """The best of one region, or ``best`` if that is better."""
-    fewest = np.inf
     for _ in range(RESTARTS):
         if problem.cancelled():
             break
-        for locators, clamps in _sets(problem, region, rng, best, fewest > region.bound):
+        for locators, clamps in _sets(problem, region, rng, best):
             found = _finished(problem, region, locators, clamps)
-            fewest = min(fewest, len(clamps))
             if best is None or found.score(problem.objective) < best.score(problem.objective):
                 best = found
     return best
 
 
 def _sets(
-    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, short: bool
+    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None
 ) -> Iterator[tuple[Indices, Indices]]:
     """Locators after exchanges with clamps for them, if these could be better than what is there; then, as long as
-    there are more clamps than the bound says (``short``), clamps first and locators for them.
+    there are more clamps than the bound says, clamps first and locators for them.
     """
+    short = best is None or len(best.clamps) > region.bound
     locators = _located(problem, region, rng)
     if locators is None:
         return
@@ -206,6 +207,19 @@ def _by_face(problem: Problem, locators: Indices) -> Indices:
     features = [problem.candidates.features[index] for index in locators.tolist()]
     order = sorted(range(len(locators)), key=lambda k: (-features.count(features[k]), features[k], locators[k]))
     return locators[order]
+
+
+def _best_accuracy(problem: Problem, regions: Sequence[Region], clamps: int) -> float:
+    """A bound over all regions that might do with so few clamps."""
+    least = np.inf
+    for region in regions:
+        if region.bound <= clamps:
+            pool = np.concatenate([problem.rows_of(region.pool), problem.rows_of(problem.locators)])
+            if problem.features is not None and problem.candidates.freedoms == problem.candidates.dimension:
+                least = min(least, least_error(problem.rows, problem.features, pool))
+            else:
+                least = min(least, 1.0 / largest_volume(problem.rows[pool]))
+    return float(least)
 
 
 def accuracy(problem: Problem, locators: Indices) -> float:
