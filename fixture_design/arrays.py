@@ -29,6 +29,8 @@ Indices = Int[np.ndarray, "_"]
 Point = Float[np.ndarray, "p"]
 #: Points as rows.
 Points = Float[np.ndarray, "_ p"]
+#: The two ends of segments [m].
+Ends = Float[np.ndarray, "_ 2 p"]
 
 #: What the public functions take where they want numbers: an array, or lists of them.
 ArrayLike = np.ndarray | Sequence[Any]

@@ -7,8 +7,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from fixture_design.cli.messages import printable
-from fixture_design.cli.words import evidence_in_words
 from fixture_design.layout import Answer, GroupVerdict, Verdict
+from fixture_design.viewing.words import evidence_in_words
 
 _STYLE = {Answer.YES: "green", Answer.NO: "red", Answer.UNDECIDED: "yellow", None: "dim"}
 _SATISFIED = {

@@ -11,6 +11,7 @@ from fixture_design.cli.exit_codes import ExitCode, of_answer, worst
 from fixture_design.cli.messages import met_in, say, say_internal_error
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, error_record, read_layout, verdict_to_dict
+from fixture_design.layout import Layout, Verdict
 
 
 def verify(
@@ -18,6 +19,9 @@ def verify(
         list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT...", readable=False)
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout (several: an array).")] = False,
+    report: Annotated[
+        Path | None, typer.Option("--report", help="Also write a sheet to sign, as HTML.", metavar="OUT.html")
+    ] = None,
 ) -> None:
     """Say whether layouts locate the part, let it out and hold it, with evidence.
 
@@ -27,9 +31,11 @@ def verify(
 
     codes: list[ExitCode] = []
     records: list[dict[str, Any]] = []
+    verified: list[tuple[Layout, Verdict]] = []
     for path in layouts:
         try:
-            verdict = verify_layout(read_layout(path))
+            layout = read_layout(path)
+            verdict = verify_layout(layout)
         except InputError as error:
             say(met_in(path, error))
             codes.append(ExitCode.BAD_INPUT)
@@ -41,6 +47,7 @@ def verify(
             records.append(error_record(path, error))
             continue
         codes.append(of_answer(verdict.satisfied))
+        verified.append((layout, verdict))
         if as_json:
             records.append(verdict_to_dict(verdict))
         else:
@@ -49,4 +56,23 @@ def verify(
             print_verdict(verdict)
     if as_json:
         typer.echo(dumps(records[0] if len(layouts) == 1 else records))
+    if report is not None:
+        codes.append(_write_report(report, layouts, verified))
     raise typer.Exit(worst(codes))
+
+
+def _write_report(report: Path, layouts: list[Path], verified: list[tuple[Layout, Verdict]]) -> ExitCode:
+    """Sheets of the layouts that could be verified; the others have had their message."""
+    from fixture_design.viewing import refuse_inputs, write_report  # noqa: PLC0415 - reads geometry again
+
+    try:
+        refuse_inputs(report, layouts)
+        if verified:
+            write_report(verified, report)
+    except InputError as error:
+        say(met_in(report, error))
+        return ExitCode.BAD_INPUT
+    except Exception as error:  # noqa: BLE001 - the verdicts have been said
+        say_internal_error(error, report)
+        return ExitCode.INTERNAL_ERROR
+    return ExitCode.HOLDS

@@ -7,6 +7,7 @@ from fixture_design.geometry.contact import contact_of, contacts_of_element, pol
 from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
+from fixture_design.geometry.mass import Mass, mass_of
 from fixture_design.geometry.mesh_file import unreadable
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.polygon import Polygon, polygon_of
@@ -14,12 +15,14 @@ from fixture_design.geometry.polygon_sampling import given_polygon_points, sampl
 from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
 from fixture_design.geometry.sampling import SurfacePoints, given_points, grid_points, sample_surface
 from fixture_design.geometry.sampling_rules import Box, SamplingRules
+from fixture_design.geometry.sharp_edges import sharp_edges
 from fixture_design.geometry.slide import Slide, slide
 
 __all__ = [
     "Box",
     "Facet",
     "GeometryContacts",
+    "Mass",
     "Overlap",
     "PartGeometry",
     "PlacedBody",
@@ -37,11 +40,13 @@ __all__ = [
     "grid_points",
     "load_geometry",
     "load_part",
+    "mass_of",
     "polygon_contact",
     "polygon_contacts",
     "polygon_of",
     "sample_polygon",
     "sample_surface",
+    "sharp_edges",
     "slide",
     "unreadable",
 ]

@@ -28,12 +28,14 @@ class GeometryContacts:
         notes: about the part and the bodies, for people.
         box_center: centre of the part's bounding box (taken in its own frame P), in W [m].
         half_diagonal: of that box [m]: the length that makes margins dimensionless, however the part is placed.
+        geometry: of the part.
     """
 
     contacts: tuple[Contact, ...]
     notes: tuple[str, ...]
     box_center: Point
     half_diagonal: float
+    geometry: PartGeometry | Polygon
 
 
 def load_geometry(part: Part) -> PartGeometry | Polygon:
@@ -69,7 +71,9 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     contacts = tuple(c for element in layout.elements for c in _contacts(element, layout, part, surface))
     of_bodies, notes = contacts_of_bodies(layout, geometry)
     center = part.pose.points(geometry.box_center[None])[0]
-    return GeometryContacts((*contacts, *of_bodies), (*geometry.notes, *notes), center, geometry.half_diagonal)
+    return GeometryContacts(
+        (*contacts, *of_bodies), (*geometry.notes, *notes), center, geometry.half_diagonal, geometry
+    )
 
 
 def _surface_near(elements: Sequence[Element], geometry: PartGeometry, X_WP: Pose) -> SolidSurface:

@@ -14,6 +14,7 @@ import numpy as np
 
 from fixture_design.cones import PolyhedralConvexCone
 from fixture_design.contacts import Contact
+from fixture_design.io.use_record import loads_to_list, use_to_dict
 from fixture_design.io.witness_record import plain_numbers, witness_to_dict
 from fixture_design.layout import Finding, GroupVerdict, Verdict
 
@@ -42,7 +43,7 @@ def verdict_to_dict(verdict: Verdict, brief: bool = False) -> Data:
     data["requirements"] = [
         {"group": row.group, "require": row.require, "verdict": _answer(row.answer)} for row in verdict.requirements
     ]
-    return data | {"loads": [], "notes": list(verdict.notes), "run": _run(verdict)}
+    return data | {"loads": loads_to_list(verdict.groups, brief), "notes": list(verdict.notes), "run": _run(verdict)}
 
 
 def error_record(source: str | Path, error: Exception, name: str | None = None) -> Data:
@@ -75,7 +76,7 @@ def _finding(finding: Finding, brief: bool) -> Data:
     if not brief:
         data |= {
             "margin": plain_numbers(finding.margin),
-            "witness": witness_to_dict(finding.evidence),
+            "witness": witness_to_dict(finding.evidence) if finding.use is None else use_to_dict(finding.use),
             "residual": plain_numbers(finding.residual),
         }
         if finding.edges is not None:

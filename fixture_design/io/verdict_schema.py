@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field
 
 from fixture_design.contacts import Role
 from fixture_design.io.record_types import Number, Record
+from fixture_design.io.use_schema import LoadsHeldRecord, LoadVerdictRecord, LocatingRecord, SeatingRecord, WaysRecord
 from fixture_design.layout import Requirement, RuleName, Space
 
 VerdictWord = Literal["yes", "no", "undecided"]
@@ -72,12 +73,15 @@ class RankRecord(Record):
     rule: RuleRecord | None = Field(None, description="why errors of normals do not change the answer")
 
 
+_UseRecord = LocatingRecord | LoadsHeldRecord | SeatingRecord | WaysRecord
+
+
 class FindingRecord(Record):
     """One answer about a group. With `--brief` only `verdict` and `reason`."""
 
     verdict: VerdictWord | None = Field(description="null for an empty group")
     margin: Number | None = Field(None, description="dimensionless; rows about run.reference, over run.length")
-    witness: WeightsRecord | BranchesRecord | MotionRecord | RankRecord | None = None
+    witness: WeightsRecord | BranchesRecord | MotionRecord | RankRecord | _UseRecord | None = None
     residual: Number | None = Field(None, description="|D^T w| / sum w, or largest d.u / |u|; dimensionless")
     edges: int | None = Field(None, description="friction edges in space")
     tangents: dict[str, list[Row]] | None = Field(
@@ -182,7 +186,7 @@ class VerdictRecord(Record):
     groups: dict[str, GroupRecord]
     contacts: list[FoundContactRecord] | None = Field(None, description="absent with --brief")
     requirements: list[RequirementRecord]
-    loads: list[dict[str, object]]
+    loads: list[LoadVerdictRecord]
     notes: list[str]
     run: RunRecord
 

@@ -34,6 +34,7 @@ from fixture_design.layout.use import (
     SeatingStep,
     StraightWays,
     Unbalanced,
+    severity,
 )
 from fixture_design.layout.verdict import (
     Counted,
@@ -96,4 +97,5 @@ __all__ = [
     "Weights",
     "element_name",
     "groups_of",
+    "severity",
 ]

@@ -138,6 +138,12 @@ class LoadVerdict:
     reason: str | None = None
 
 
+def severity(load: LoadVerdict) -> tuple[int, float]:
+    """For sorting, the worst first: those that fail, those undecided, then by their reserve."""
+    order = (Answer.NO, Answer.UNDECIDED, Answer.YES).index(load.answer)
+    return order, load.reserve[0] if load.reserve else 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class LoadsHeld:
     """Evidence for `holds_loads`.

@@ -101,7 +101,7 @@ def contacts_of(layout: Layout) -> FoundContacts:
 
     found = contacts_of_elements(layout)
     contacts = (*found.contacts, *layout.contacts)
-    return FoundContacts(contacts, Scale(found.box_center, found.half_diagonal), found.notes)
+    return FoundContacts(contacts, Scale(found.box_center, found.half_diagonal), found.notes, found.geometry)
 
 
 def _check_part_file(layout: Layout) -> None:

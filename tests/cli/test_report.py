@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from fixture_design.cli.verdict_table import print_verdict
-from fixture_design.cli.words import motion_in_words, place_in_words
 from fixture_design.contacts import velocity
 from fixture_design.io import read_layout
 from fixture_design.verification import verify
+from fixture_design.viewing.motion_words import motion_in_words, place_in_words
 from tests.cli.layouts import HEAD, HOLDS, LOCATORS
 
 LONG = "Z" + "long" * 60 + "Z"

@@ -1,0 +1,51 @@
+"""The files that a layout depends on, each with the hash of what it held: what exactly a verdict is about."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from fixture_design.geometry.package import resolve
+from fixture_design.geometry.urdf_tree import robot_of
+from fixture_design.layout import Layout
+
+
+@dataclass(frozen=True)
+class InputFile:
+    """``sha256`` of the bytes of a ``file``, and its ``role``: "layout", "part", "body vblock", "load cutting"."""
+
+    role: str
+    file: Path
+    sha256: str
+
+
+def input_files(layout: Layout) -> tuple[InputFile, ...]:
+    """The layout's own file, its part, bodies and load paths, with the meshes that URDF files name.
+
+    Raises:
+        FileFormatError: a file that is missing.
+    """
+    named = [("layout", layout.source)] if layout.source is not None and layout.source.is_file() else []
+    if layout.part is not None and layout.part.file is not None:
+        named += [("part", file) for file in _with_meshes(layout.part.file)]
+    named += [(f"body {body.name}", file) for body in layout.bodies for file in _with_meshes(body.file)]
+    named += [(f"load {load.name}", load.path) for load in layout.loads if load.path is not None]
+    return tuple(InputFile(role, file, _sha256(file)) for role, file in dict.fromkeys(named))
+
+
+def _with_meshes(file: Path) -> list[Path]:
+    if file.suffix.lower() != ".urdf":
+        return [file]
+    meshes = [mesh.get("filename", "") for mesh in robot_of(file).iter() if _is_mesh(mesh)]
+    return [file, *dict.fromkeys(resolve(name, file, f"mesh {name!r}") for name in meshes if name)]
+
+
+def _is_mesh(element: ElementTree.Element) -> bool:
+    return str(element.tag).rpartition("}")[2] == "mesh"
+
+
+def _sha256(file: Path) -> str:
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()
