@@ -8,9 +8,9 @@ import numpy as np
 
 from fixture_design.arrays import Point, Vector
 from fixture_design.cli.messages import printable
-from fixture_design.cli.words import motion_in_words
 from fixture_design.design import Bound, DesignResult, Step
 from fixture_design.layout import Answer
+from fixture_design.viewing.motion_words import motion_in_words
 
 _OUTCOME = {
     Answer.YES: "the requirements hold",
