@@ -37,9 +37,25 @@ def cheapest_cover(cuts: Sequence[Mask], costs: Weights, apart: Sequence[tuple[i
     return _solved(hits[:, kept].astype(np.float64), pairs, costs[kept], kept)
 
 
+def greedy_cover(cuts: Sequence[Mask], costs: Weights) -> Indices | None:
+    """Candidates with one of every cut, each the one with most of what is left for its cost; None if there are none."""
+    if not cuts:
+        return np.zeros(0, dtype=np.int64)
+    left = np.array(cuts)
+    chosen: list[int] = []
+    while len(left):
+        worth = left.sum(axis=0) / costs
+        best = int(np.argmax(worth))
+        if worth[best] == 0:
+            return None
+        chosen.append(best)
+        left = left[~left[:, best]]
+    return np.array(chosen, dtype=np.int64)
+
+
 def _unlike(hits: np.ndarray, costs: Weights, always: set[int]) -> Indices:
-    """Candidates that hit something, one for each set of cuts, and all of ``always``."""
-    order = np.argsort(costs, kind="stable")
+    """Candidates that hit something: all of ``always``, and of the others one for each set of cuts."""
+    order = np.array([index for index in np.argsort(costs, kind="stable") if index not in always], dtype=np.int64)
     patterns = np.packbits(hits[:, order], axis=0)
     _, first = np.unique(patterns, axis=1, return_index=True)
     chosen = {int(order[index]) for index in first} | always

@@ -19,7 +19,7 @@ import numpy as np
 from fixture_design.arrays import Indices, Mask, Points, Rows, Vector, Weights
 from fixture_design.cones.kernel import closure_test, tucker_partition
 from fixture_design.design.candidates import Several, flat, stops
-from fixture_design.design.cover import cheapest_cover
+from fixture_design.design.cover import cheapest_cover, greedy_cover
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: Cuts after which the search says what it knows so far.
@@ -58,6 +58,7 @@ def fewest_stopping(
     spacing: float = 0.0,
     most_cuts: int = MOST_CUTS,
     known: Sequence[Vector] = (),
+    enough: float = np.inf,
     tolerances: Tolerances = DEFAULT,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Hitting:
@@ -68,6 +69,7 @@ def fewest_stopping(
         costs: shape (len(pool),), around 1; by default all 1, and the fewest are sought.
         places, spacing: two of the pool closer than this are not chosen together.
         known: motions to begin with, that ``base`` leaves free.
+        enough: the search ends where the bound reaches this, with or without a choice.
     """
     base, pool = np.asarray(base, dtype=np.int64), np.asarray(pool, dtype=np.int64)
     costs = np.ones(len(pool)) if costs is None else costs
@@ -78,24 +80,34 @@ def fewest_stopping(
     motions = [motion for motion in known if not stops(rows[base], motion, tolerances.near).any()]
     cuts = [stops(rows[pool], motion, tolerances.near) for motion in motions]
     apart: list[tuple[int, int]] = []
-    bound = 0
+    bound, exact = 0, False
+
+    def found(chosen: Indices | None, least: int, complete: bool = True) -> Hitting:
+        return Hitting(chosen, least, None, np.array(motions).reshape(-1, dimension), complete)
+
     while True:
-        cover = cheapest_cover(cuts, costs, apart)
+        # a cover that is quickly made finds most of the cuts; the cheapest one has the last word
+        cover = cheapest_cover(cuts, costs, apart) if exact or apart else greedy_cover(cuts, costs)
         if cover is None:
-            return Hitting(None, len(pool) + 1, None, np.array(motions).reshape(-1, dimension))
-        bound = max(bound, _at_least(float(costs[cover].sum()), costs))
+            return found(None, len(pool) + 1)
+        if exact or apart:
+            bound = max(bound, _at_least(float(costs[cover].sum()), costs))
         near = _too_near(cover, None if places is None else places[pool], spacing)
         if near is not None:
             apart.append(near)
             continue
         motion = free_motion(flat(rows, np.concatenate([base, pool[cover]])), tolerances)
-        if motion is None:
-            return Hitting(pool[cover], bound, None, np.array(motions).reshape(-1, dimension))
-        if len(cuts) + len(apart) >= most_cuts or cancelled():
-            return Hitting(None, bound, None, np.array(motions).reshape(-1, dimension), complete=False)
-        motion, cut = _strongest(rows, base, pool, cover, motion, tolerances)
-        motions.append(motion)
-        cuts.append(cut)
+        if motion is None and (exact or apart):
+            return found(pool[cover], bound)
+        if bound >= enough or len(cuts) + len(apart) >= most_cuts or cancelled():
+            last = cheapest_cover(cuts, costs)
+            least = len(pool) + 1 if last is None else _at_least(float(costs[last].sum()), costs)
+            return found(None, max(bound, least), complete=False)
+        exact = motion is None
+        if motion is not None:
+            motion, cut = _strongest(rows, base, pool, cover, motion, tolerances)
+            motions.append(motion)
+            cuts.append(cut)
 
 
 def free_motion(rows: Rows, tolerances: Tolerances = DEFAULT) -> Vector | None:

@@ -17,6 +17,9 @@ from fixture_design.design.straight import cells, different
 #: Regions that are bounded at most.
 MOST_BOUNDED = 64
 
+#: A region that needs this many clamps more than another one need not be known any better.
+_AND_MORE = 2
+
 
 @dataclass(frozen=True, eq=False)
 class Region:
@@ -53,7 +56,8 @@ def regions_of(problem: Problem, seed: int) -> tuple[list[Region], bool]:
         if problem.closes is None:
             regions.append(Region(cell.direction, pool, None))
             continue
-        clamps = _bounded(problem, pool)
+        least = min((region.bound for region in regions), default=np.inf)
+        clamps = _bounded(problem, pool, float(least + _AND_MORE))
         if clamps.chosen is not None or not clamps.complete:
             regions.append(Region(cell.direction, pool, clamps))
     regions.sort(key=lambda region: (region.bound, -len(region.pool)))
@@ -69,13 +73,14 @@ def _enough(problem: Problem, pool: Indices) -> bool:
     return int((values > problem.candidates.tolerances.near * values[0]).sum()) >= problem.candidates.freedoms
 
 
-def _bounded(problem: Problem, pool: Indices) -> Hitting:
-    """The fewest clamps that close with every locator that is allowed."""
+def _bounded(problem: Problem, pool: Indices, enough: float) -> Hitting:
+    """The fewest clamps that close with every locator that is allowed, or only that they are ``enough`` in number."""
     base = np.concatenate([pool, problem.kept])
     others = np.setdiff1d(problem.clampable, base)
     found = fewest_stopping(
-        problem.closing_rows, base, others, tolerances=problem.candidates.tolerances, cancelled=problem.cancelled
-    )
+        problem.closing_rows, base, others, tolerances=problem.candidates.tolerances,
+        enough=enough - len(problem.clamps), cancelled=problem.cancelled,
+    )  # fmt: skip
     return Hitting(found.chosen, found.bound + len(problem.clamps), found.free, found.cuts, found.complete)
 
 

@@ -10,7 +10,7 @@ Locators that the part would only slide between (n . t = 0 on both sides, as in 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -75,8 +75,7 @@ def cells(normals: Points, out: Point | None = None, seed: int = 0) -> tuple[lis
         key = leaves.tobytes()
         if leaves.any() and (key not in best or _depth(normals, direction) > _depth(normals, best[key].direction)):
             best[key] = Cell(direction, leaves)
-    largest = [one for one in best.values() if not _within_another(one, best.values())]
-    return sorted(largest, key=lambda cell: -int(cell.leaves.sum())), complete
+    return sorted(_largest(list(best.values())), key=lambda cell: -int(cell.leaves.sum())), complete
 
 
 def _depth(normals: Points, direction: Point) -> float:
@@ -84,9 +83,14 @@ def _depth(normals: Points, direction: Point) -> float:
     return float(np.abs(normals @ direction).min())
 
 
-def _within_another(cell: Cell, others: Iterable[Cell]) -> bool:
-    """Whether another cell leaves all that this one does, and more."""
-    return any((cell.leaves <= other.leaves).all() and (cell.leaves != other.leaves).any() for other in others)
+def _largest(found: list[Cell]) -> list[Cell]:
+    """Those that no other one has all normals of, and more; all of them leave different normals."""
+    if not found:
+        return []
+    leaves = np.array([cell.leaves for cell in found]).astype(np.float64)
+    missed = leaves @ (1.0 - leaves).T  # for each pair how many normals of the first the second does not leave
+    within = (missed == 0).sum(axis=1) > 1
+    return [cell for cell, inside in zip(found, within, strict=True) if not inside]
 
 
 def _in_the_plane(normals: Points) -> Iterator[Point]:
