@@ -210,10 +210,12 @@ def _bound(problem: Problem, outcome: Outcome) -> Bound | None:
     """What is proven about the number of elements."""
     if outcome.least_clamps is None:
         return None
+    found = None if outcome.found is None else outcome.found.count
+    if outcome.least_elements is not None:
+        return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
     locators, clamps = problem.candidates.freedoms, outcome.least_clamps
     single = problem.each == 1 and problem.closes == "without friction"
     elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
-    found = None if outcome.found is None else outcome.found.count
     return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates))
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Point
 from fixture_design.design.accuracy_bounds import largest_volume, least_error
+from fixture_design.design.anything import closing_elements
 from fixture_design.design.clamping import closes, held_best, locators_for, margins
 from fixture_design.design.closing import fewest_closing
 from fixture_design.design.hitting import fewest_stopping
@@ -65,16 +66,20 @@ class Outcome:
         least_clamps: no layout that does what is asked has fewer; None where none could be bounded.
         complete: whether the bounds hold for all directions, not only for those tried.
         best_accuracy: no locators with as few clamps have a smaller one; None where there is no layout.
+        least_elements: where nothing is asked of the locators, no layout has fewer elements; else None.
     """
 
     found: Found | None
     least_clamps: int | None
     complete: bool
     best_accuracy: float | None = None
+    least_elements: int | None = None
 
 
 def search(problem: Problem, seed: int, progress: Progress = lambda words, part: None) -> Outcome:
     """The best layout that the search meets, with bounds of the number of clamps and of the accuracy."""
+    if not (problem.locates or problem.leaves or problem.closes is None):
+        return _whatever_closes(problem, seed)
     regions, complete = regions_of(problem, seed)
     best: Found | None = None
     for number, region in enumerate(regions):
@@ -84,6 +89,20 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
         best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
     least = min((region.bound for region in regions), default=None)
     return Outcome(best, least, complete, None if best is None else _best_accuracy(problem, regions, len(best.clamps)))
+
+
+def _whatever_closes(problem: Problem, seed: int) -> Outcome:
+    """As few elements as close; the last one is the clamp."""
+    chosen, least = closing_elements(problem, seed)
+    least += len(problem.kept)
+    if chosen is None:
+        return Outcome(None, 0, True, None, least)
+    was = np.isin(chosen, problem.spare)
+    new = chosen[~was]
+    clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[-1:]])
+    locators = np.concatenate([problem.kept[: len(problem.locators)], new[:-1]])
+    margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
+    return Outcome(Found(locators, clamps, None, accuracy(problem, locators), margin), 0, True, None, least)
 
 
 def _better_within(problem: Problem, region: Region, rng: np.random.Generator, best: Found | None) -> Found | None:

@@ -147,6 +147,22 @@ def test_every_new_element_has_a_motion_that_it_stops() -> None:
         here.append(contact)
 
 
+@pytest.mark.parametrize(("words", "count"), [("form_closure", 4), ("force_closure", 2)])
+def test_where_nothing_is_asked_of_the_locators_the_fewest_close(words: str, count: int) -> None:
+    spots = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 5)
+    result = designed(spots, require={"all": (words,)}, friction=0.3)
+    assert holds(result)
+    assert sum(counts(result)) == count
+    assert result.bound is not None
+    assert result.bound.proven
+
+
+def test_a_fixture_may_only_locate() -> None:
+    result = designed(box(6), require={"locators": ("deterministic", "strongly_accessible", "loadable")[:2]})
+    assert holds(result)
+    assert counts(result) == (6, 0)
+
+
 def test_cancelled_at_once_gives_what_is_there() -> None:
     result = design(task(box(8)), Fake(box(8)), cancelled=lambda: True)
     assert result.satisfied in (Answer.UNDECIDED, Answer.YES)

@@ -128,3 +128,18 @@ def test_adding_stops_every_span_vector(seed: int) -> None:
         before = everything[: everything.index(index)]
         assert (some.rows[index] @ motion).max() > 1e-8
         assert (flat(some.rows, before) @ motion).max(initial=0.0) <= 1e-8
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(500))
+def test_random_starts_end_right_and_keep_what_they_were_told_to_keep(seed: int) -> None:
+    spots = (
+        polygon(RECTANGLE + 0.3 * np.random.default_rng(seed).uniform(-1, 1, (4, 2)), 5) if seed % 2 else box(5, seed)
+    )
+    elements = random_start(spots, seed, seed % 13, seed % 3)
+    result = started(spots, elements)
+    if result.satisfied is Answer.NO:
+        assert seed % 3
+        assert "must stay" in (result.reason or "") or "no straight way out" in (result.reason or "")
+        return
+    confirm(result, elements)
