@@ -2,43 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from fixture_design.arrays import Mask
-from fixture_design.contacts import face_vectors, unit_normal
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import layout_of, named
-from fixture_design.design.locating import Features
+from fixture_design.design.features import features_of
+from fixture_design.design.found import Found, Outcome
+from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
-from fixture_design.design.search import Found, Outcome, search
+from fixture_design.design.search import search
+from fixture_design.design.shortfall import bound_of, refused, without_layout
 from fixture_design.design.start import Start, begun
 from fixture_design.design.steps import Step, additions, in_world
 from fixture_design.design.task import Task
 from fixture_design.design.ways import Progress, Ways
 from fixture_design.errors import GeometryError
-from fixture_design.layout import Answer, Requirement
-from fixture_design.tolerances import NORMALS_KNOWN_TO, USUAL_FRICTION
-
-Require = Mapping[str, tuple[Requirement, ...]]
-
-#: Requirements of locators that design meets by determining the part, and by a straight way out.
-_LOCATING: tuple[Requirement, ...] = ("deterministic", "strongly_accessible", "accessible", "accurate")
-_LEAVING: tuple[Requirement, ...] = ("loadable",)
+from fixture_design.layout import Answer
 
 _RANK = {Answer.YES: 2, Answer.UNDECIDED: 1, Answer.NO: 0}
-
-
-@dataclass(frozen=True)
-class _Plan:
-    """What is asked for, and why, if it is not what was asked for first."""
-
-    require: Require
-    friction: float
-    reason: str | None = None
 
 
 def design(
@@ -66,8 +52,8 @@ def design(
     progress("candidates", 0.0)
     candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)
     best: DesignResult | None = None
-    for plan in _plans(task, ways):
-        for some in _by_certainty(candidates):
+    for plan in plans(task, ways):
+        for some in by_certainty(candidates):
             for keep_all in (True, False) if _may_let_go(task) else (True,):
                 found = _designed(task, ways, some, plan, keep_all, seed, progress, cancelled)
                 best = found if best is None else _better(best, found)
@@ -85,37 +71,6 @@ def _ways_of(task: Task) -> Ways:
     return PartSurface(task.part, task.surface_gap)
 
 
-def _plans(task: Task, ways: Ways) -> Iterator[_Plan]:
-    """What the task requires; for a bare part closure without friction, then with friction, where it may spin."""
-    if task.require is not None:
-        yield _Plan(task.require, task.friction)
-        return
-    leaving: tuple[Requirement, ...] = tuple(word for word in _LEAVING if word in ways.answers)
-    without: Require = {"locators": ("deterministic", "strongly_accessible", *leaving), "all": ("form_closure",)}
-    yield _Plan(without, task.friction)
-    reason = "no layout without friction closes this part; with friction one does, and the locators let it move freely"
-    rubbing: Require = {"locators": ("strongly_accessible", *leaving), "all": ("force_closure",)}
-    yield _Plan(
-        rubbing,
-        task.friction or USUAL_FRICTION,
-        f"{reason} (coefficient {task.friction or USUAL_FRICTION:g})",
-    )
-
-
-def _by_certainty(candidates: Candidates) -> Iterator[Candidates]:
-    """Candidates whose normals are known best; then those known less well too, as far as that adds any.
-
-    A group that cannot notice all that the next one can is left out: the end faces of a shaft are exact, and alone they
-    are no place for its locators.
-    """
-    groups = [candidates.chosen(candidates.errors <= error) for error in NORMALS_KNOWN_TO]
-    groups = [one for k, one in enumerate(groups) if len(one) and (k == 0 or len(one) > len(groups[k - 1]))]
-    if not groups:
-        raise GeometryError("no candidate has a normal that is known well enough", expected="facets that are flat")
-    most = max(one.freedoms for one in groups[: len(NORMALS_KNOWN_TO) - 1])
-    yield from (one for one in groups if one.freedoms >= most)
-
-
 def _may_let_go(task: Task) -> bool:
     return task.start is not None and any(not e.fixed for e in task.start.elements if e.role in ("locator", "clamp"))
 
@@ -130,7 +85,7 @@ def _designed(
     task: Task,
     ways: Ways,
     candidates: Candidates,
-    plan: _Plan,
+    plan: Plan,
     keep_all: bool,
     seed: int,
     progress: Progress,
@@ -138,14 +93,14 @@ def _designed(
 ) -> DesignResult:
     """One attempt: among these candidates, with this plan."""
     locators, everything = plan.require.get("locators", ()), plan.require.get("all", ())
-    leaves = bool(set(_LEAVING) & set(locators)) or task.require is None or task.limits.loading is not None
+    leaves = bool(set(LEAVING) & set(locators)) or task.require is None or task.limits.loading is not None
     start = begun(task, candidates.with_friction(plan.friction), ways, leaves, keep_all)
     closes = "with friction" if "force_closure" in everything else None
     problem = Problem(
         start.candidates, task.limits, task.objective, start.locators, start.others, start.spare,
-        locates=bool(set(_LOCATING) & set(locators)), leaves=leaves,
+        locates=bool(set(LOCATING) & set(locators)), leaves=leaves,
         closes="without friction" if "form_closure" in everything else closes,
-        features=_features(task, start.candidates), cancelled=cancelled,
+        features=features_of(task, start.candidates), cancelled=cancelled,
     )  # fmt: skip
     if start.conflict:
         reason = f"{', '.join(start.conflict)} must stay, and let the part neither in nor out"
@@ -161,9 +116,9 @@ def _designed(
         free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
         return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
     outcome = search(problem, seed, progress)
-    bound = _bound(problem, outcome)
-    if outcome.found is None or _refused(task, outcome.found):
-        return _without_layout(problem, outcome, bound, start)
+    bound = bound_of(problem, outcome)
+    if outcome.found is None or refused(task, outcome.found):
+        return without_layout(problem, outcome, bound, start)
     try:
         return _drawn_up(task, ways, problem, outcome, bound, start, plan)
     except GeometryError:
@@ -189,61 +144,8 @@ def _useless(task: Task, ways: Ways, problem: Problem, found: Found) -> Mask:
     return useless
 
 
-def _features(task: Task, candidates: Candidates) -> Features | None:
-    """The rows of the key features, in their tolerances, and of each candidate its row's length."""
-    if not task.key_features:
-        return None
-    points = np.array([feature.point for feature in task.key_features]) - candidates.scale.reference
-    directions = np.array([unit_normal(feature.direction) for feature in task.key_features])
-    rows = face_vectors(points, directions)
-    p = points.shape[1]
-    rows[:, p:] /= candidates.scale.length
-    several = candidates.normals.reshape(-1, p)
-    levers = face_vectors((candidates.points - candidates.scale.reference).reshape(-1, p), several)
-    levers[:, p:] /= candidates.scale.length
-    lengths = np.linalg.norm(levers, axis=1)
-    tolerances = np.array([feature.tolerance for feature in task.key_features])
-    return Features(rows / tolerances[:, None], np.where(lengths > 0, lengths, 1.0))
-
-
-def _bound(problem: Problem, outcome: Outcome) -> Bound | None:
-    """What is proven about the number of elements."""
-    if outcome.least_clamps is None:
-        return None
-    found = None if outcome.found is None else outcome.found.count
-    if outcome.least_elements is not None:
-        return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
-    locators, clamps = problem.candidates.freedoms, outcome.least_clamps
-    single = problem.each == 1 and problem.closes == "without friction"
-    elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
-    return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates))
-
-
-def _refused(task: Task, found: Found) -> bool:
-    """Whether there are more elements than there may be."""
-    limits = task.limits
-    many_locators = limits.locators is not None and len(found.locators) > limits.locators
-    return many_locators or (limits.clamps is not None and len(found.clamps) > limits.clamps)
-
-
-def _without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
-    """Why there is none, and whether that is proven."""
-    limits, steps = problem.limits, start.steps
-    if bound is None:
-        reason = "no straight way out leaves enough places for locators that determine the part"
-        answer = Answer.NO if outcome.complete else Answer.UNDECIDED
-        return DesignResult(answer, None, steps=steps, reason=reason)
-    for what, least, most in (("locators", bound.locators, limits.locators), ("clamps", bound.clamps, limits.clamps)):
-        if most is not None and least > most:
-            answer = Answer.NO if bound.complete else Answer.UNDECIDED
-            reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
-            return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
-    reason = f"no layout was found; at least {bound.locators} locators and {bound.clamps} clamps are needed"
-    return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)
-
-
 def _drawn_up(
-    task: Task, ways: Ways, problem: Problem, outcome: Outcome, bound: Bound | None, start: Start, plan: _Plan
+    task: Task, ways: Ways, problem: Problem, outcome: Outcome, bound: Bound | None, start: Start, plan: Plan
 ) -> DesignResult:
     """The layout of what was found, with its verdict and its record."""
     found = outcome.found
@@ -263,10 +165,13 @@ def _drawn_up(
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(problem, found.locators, found.clamps, names)), bound,
         found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
-        reason=reason, notes=tuple(_notes(task)),
+        reason=reason, notes=tuple(_notes(task, problem)),
     )  # fmt: skip
 
 
-def _notes(task: Task) -> Iterator[str]:
+def _notes(task: Task, problem: Problem) -> Iterator[str]:
+    elements = [problem.candidates.elements[index] for index in problem.kept.tolist()]
+    if kept := [element.name for element in elements if element is not None and not element.fixed]:
+        yield f"the bounds are those of layouts that keep {', '.join(kept)}"
     if "preload" in task.objective:
         yield "the objective `preload` is not evaluated by this version; the margin of closure stood for it"

@@ -8,15 +8,15 @@ what is there already; so the smallest bound of all cells proves the number of e
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point
+from fixture_design.arrays import Indices
 from fixture_design.design.accuracy_bounds import largest_volume, least_error
 from fixture_design.design.anything import closing_elements
 from fixture_design.design.clamping import closes, held_best, locators_for, margins
 from fixture_design.design.closing import fewest_closing
+from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, inaccuracy, independent, volume
 from fixture_design.design.problem import Problem
@@ -28,52 +28,6 @@ from fixture_design.tolerances import GOOD_MARGIN
 RESTARTS, MOST_REGIONS = 6, 8
 #: What an element of the start costs next to a new one [-]: it is kept where that makes no difference to the number.
 _KEPT_COST = 0.99
-
-
-@dataclass(frozen=True, eq=False)
-class Found:
-    """A set of elements that does what is asked.
-
-    Attributes:
-        locators, clamps: indices of candidates.
-        out: the direction out of the locators, where one was asked for.
-        accuracy: worst error at a feature in its tolerances, for errors of 1 along the locators' normals; without
-            features 1 / volume of the locators' rows.  margin: a lower bound of that of closure.
-    """
-
-    locators: Indices
-    clamps: Indices
-    out: Point | None
-    accuracy: float
-    margin: float
-
-    @property
-    def count(self) -> int:
-        return len(self.locators) + len(self.clamps)
-
-    def score(self, objective: tuple[str, ...]) -> tuple[float, ...]:
-        """Small is good; what is not named in the objective comes last."""
-        values = {"fewest": float(self.count), "accuracy": self.accuracy, "margin": -self.margin}
-        order = [word for word in objective if word in values]
-        return tuple(values[word] for word in [*order, *(word for word in values if word not in order)])
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """The best set found, and what is proven.
-
-    Attributes:
-        least_clamps: no layout that does what is asked has fewer; None where none could be bounded.
-        complete: whether the bounds hold for all directions, not only for those tried.
-        best_accuracy: no locators with as few clamps have a smaller one; None where there is no layout.
-        least_elements: where nothing is asked of the locators, no layout has fewer elements; else None.
-    """
-
-    found: Found | None
-    least_clamps: int | None
-    complete: bool
-    best_accuracy: float | None = None
-    least_elements: int | None = None
 
 
 def search(problem: Problem, seed: int, progress: Progress = lambda words, part: None) -> Outcome:
