@@ -69,7 +69,7 @@ def _motion(motion: Vector | None, reference: Point, length: float) -> str:
 def _bound_in_words(bound: Bound) -> str:
     roles = f" ({bound.locators} locators, {bound.clamps} clamps)" if bound.locators else ""
     least = f"at least {bound.elements} elements{roles}"
-    among = f"among {bound.candidates} candidates{'' if bound.complete else ', in the directions that were tried,'}"
+    among = f"among {bound.candidates} candidates{'' if bound.complete else ' in the directions that were tried'}"
     if bound.gap == 0:
         return f"{bound.found} elements, the fewest {among}" + (" (proven)" if bound.proven else "")
     if bound.found is None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fixture_design.arrays import Mask
+from fixture_design.arrays import Mask, Vector
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
@@ -20,6 +20,7 @@ from fixture_design.design.shortfall import bound_of, refused, without_layout
 from fixture_design.design.start import Start, begun
 from fixture_design.design.steps import Step, additions, in_world
 from fixture_design.design.task import Task
+from fixture_design.design.unstoppable import free_for_certain
 from fixture_design.design.ways import Progress, Ways
 from fixture_design.errors import GeometryError
 from fixture_design.layout import Answer
@@ -52,15 +53,17 @@ def design(
     progress("candidates", 0.0)
     candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)
     best: DesignResult | None = None
+    free: Vector | None = None
     for plan in plans(task, ways):
         for some in by_certainty(candidates):
             for keep_all in (True, False) if _may_let_go(task) else (True,):
                 found = _designed(task, ways, some, plan, keep_all, seed, progress, cancelled)
                 best = found if best is None else _better(best, found)
                 if best.satisfied is Answer.YES or cancelled():
-                    return best
-        if best is not None and best.free is None:
-            return best
+                    return best if free is None else replace(best, free=free)
+        if best is None or best.layout is not None or best.free is None:
+            break
+        free = best.free  # the next plan has to live with it
     assert best is not None  # there is at least one plan, and candidates for it
     return best
 
@@ -77,8 +80,9 @@ def _may_let_go(task: Task) -> bool:
 
 def _better(first: DesignResult, second: DesignResult) -> DesignResult:
     """The one that does more; of two without a layout the later one, which looked at more."""
-    ranks = [(one.layout is not None, _RANK[one.satisfied]) for one in (first, second)]
-    return first if ranks[0] > ranks[1] else second
+    if first.layout is None:
+        return second
+    return first if second.layout is None or _RANK[first.satisfied] > _RANK[second.satisfied] else second
 
 
 def _designed(
@@ -106,12 +110,7 @@ def _designed(
         reason = f"{', '.join(start.conflict)} must stay, and let the part neither in nor out"
         return DesignResult(Answer.NO, None, steps=start.steps, reason=reason)
     if problem.never_stopped is not None:
-        free = in_world(problem.never_stopped, start.candidates.scale)
-        reason = f"no candidate stops a motion; {len(candidates)} were there"
-        certain = not candidates.errors.any()
-        answer = Answer.NO if certain else Answer.UNDECIDED
-        reason = reason if certain else f"{reason}, and some of their normals are not known exactly"
-        return DesignResult(answer, None, steps=start.steps, free=free, reason=reason)
+        return _unstoppable(task, ways, problem, candidates, start)
     if "deterministic" in locators and problem.candidates.freedoms < problem.candidates.dimension:
         free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
         return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
@@ -127,6 +126,22 @@ def _designed(
             raise
         kept = candidates.chosen(~useless[: len(candidates)])
         return _designed(task, ways, kept, plan, keep_all, seed, progress, cancelled)
+
+
+def _unstoppable(task: Task, ways: Ways, problem: Problem, candidates: Candidates, start: Start) -> DesignResult:
+    """No candidate stops a motion; whether that is certain where normals are not known exactly is asked again."""
+    assert problem.never_stopped is not None
+    free = in_world(problem.never_stopped, candidates.scale)
+    reason = f"no candidate stops a motion; {len(candidates)} were there"
+    if not candidates.errors.any():
+        return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
+    certain = (
+        free_for_certain(replace(task, start=None), ways, candidates) if problem.closes != "with friction" else None
+    )
+    if certain is not None:
+        return DesignResult(Answer.NO, None, steps=start.steps, free=certain, reason=reason)
+    reason = f"{reason}, and some of their normals are not known exactly"
+    return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=reason)
 
 
 def _useless(task: Task, ways: Ways, problem: Problem, found: Found) -> Mask:

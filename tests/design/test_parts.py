@@ -51,6 +51,17 @@ def test_a_shaft_is_held_by_friction_and_its_spin_is_told(tmp_path: Path) -> Non
     result = designed(solid(tmp_path, trimesh.creation.cylinder(0.02, 0.1, sections=64), "shaft.stl"), 1.0)
     assert counts(result)[0] == 5
     assert "without friction" in (result.reason or "")
+    assert result.free is not None
+    assert np.abs(result.free / result.free[5]).round(6).tolist() == [0, 0, 0, 0, 0, 1]
+
+
+def test_that_a_shaft_cannot_be_closed_is_certain(tmp_path: Path) -> None:
+    file = solid(tmp_path, trimesh.creation.cylinder(0.02, 0.1, sections=48), "shaft.stl")
+    part = Part("shaft", "mesh", file, None, 1.0, Pose.identity(3))
+    result = design(Task("shaft", part, require={"locators": ("strongly_accessible",), "all": ("form_closure",)}))
+    assert result.satisfied is Answer.NO
+    assert result.layout is None
+    assert result.free is not None
 
 
 def test_a_moved_part_has_as_many_elements(tmp_path: Path) -> None:
