@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.analysis import Restraint, form_closure
 from fixture_design.arrays import Vector
 from fixture_design.contacts import motion_scaled
 from fixture_design.design.candidates import Candidates, stops
@@ -21,6 +20,8 @@ from fixture_design.tolerances import DEFAULT
 
 def free_for_certain(task: Task, ways: Ways, candidates: Candidates) -> Vector | None:
     """A motion [dx; dtheta] about W's origin that no candidate stops, whatever its normal is; None if none is known."""
+    from fixture_design.analysis import Restraint, form_closure  # noqa: PLC0415 - most designs never ask
+
     first = {feature: index for index, feature in reversed(list(enumerate(candidates.features)))}
     chosen = np.array(sorted(first.values()), dtype=np.int64)
     names = {int(index): f"C{index}" for index in chosen}
