@@ -17,7 +17,7 @@ from fixture_design.cli.design_report import design_in_words
 from fixture_design.cli.exit_codes import ExitCode, of_answer
 from fixture_design.cli.messages import say
 from fixture_design.design import DesignResult, Task
-from fixture_design.errors import FileFormatError, InputError
+from fixture_design.errors import FileFormatError, InputError, UnsupportedError
 from fixture_design.io import TASK_ENDINGS, design_to_dict, dumps, layout_text, read_task, task_of_part, write_layout
 from fixture_design.io import write_csv as save_csv
 from fixture_design.io import write_urdf as save_urdf
@@ -41,6 +41,8 @@ def design(
     task = _task(task_or_part, scale)
     for path in (out, urdf, csv):
         _check_target(path, task)
+    if urdf is not None and task.space == "planar":
+        raise UnsupportedError("a planar layout has no URDF form", source=task.source, expected="`--csv`")
     from fixture_design.design import design as design_layout  # noqa: PLC0415 - after the arguments are known good
 
     with _interruptible() as cancelled:

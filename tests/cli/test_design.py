@@ -169,6 +169,8 @@ def test_inputs_are_not_overwritten(command: Command, box: Path, tmp_path: Path)
     assert command("design", task, "-o", tmp_path / "no" / "folder.yaml").code == 2
     assert command("design", tmp_path / "nothing.stl").code == 2
     assert command("design", task, "--scale", "2").code == 2
+    assert command("design", task, "--urdf", tmp_path / "out.urdf", "-o", tmp_path / "out.yaml").code == 2
+    assert not (tmp_path / "out.yaml").exists()
 
 
 def test_ctrl_c_saves_the_best_so_far(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
