@@ -58,6 +58,9 @@ def design(
         for some in by_certainty(candidates):
             for keep_all in (True, False) if _may_let_go(task) else (True,):
                 found = _designed(task, ways, some, plan, keep_all, seed, progress, cancelled)
+                if left_out := len(candidates) - len(some):
+                    note = f"{left_out} candidates on round or uncertain surfaces were left out"
+                    found = replace(found, notes=(*found.notes, note))
                 best = found if best is None else _better(best, found)
                 if best.satisfied is Answer.YES or cancelled():
                     return best if free is None else replace(best, free=free)
