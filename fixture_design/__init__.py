@@ -11,7 +11,7 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > io > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
+    cli > io > design > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
@@ -29,6 +29,8 @@ The folders state the theory, and each imports only from those to its right::
   bodies all there are (`geometry.bodies`), each from the tangent cones of both sides (`contacts.polyhedral`); the part
   posed among bodies, candidate points on its surface, sliding over it.
 * `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.
+* `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
+  cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
 * `io`: files. `cli`: the command line.
 
 How an answer is decided
@@ -58,32 +60,43 @@ from fixture_design.version import VERSION as __version__
 if TYPE_CHECKING:
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
-    from fixture_design.io import read_layout, write_layout
+    from fixture_design.design import DesignResult, Task, design
+    from fixture_design.io import read_layout, read_task, task_of_part, write_layout
     from fixture_design.layout import Layout, Verdict
     from fixture_design.verification import check, contacts_of, verify
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
     "Contact": "contacts",
+    "DesignResult": "design",
     "Layout": "layout",
     "PolyhedralConvexCone": "cones",
+    "Task": "design",
     "Verdict": "layout",
     "check": "verification",
     "contacts_of": "verification",
+    "design": "design",
     "read_layout": "io",
+    "read_task": "io",
+    "task_of_part": "io",
     "verify": "verification",
     "write_layout": "io",
 }
 
 __all__ = [
     "Contact",
+    "DesignResult",
     "Layout",
     "PolyhedralConvexCone",
+    "Task",
     "Verdict",
     "__version__",
     "check",
     "contacts_of",
+    "design",
     "read_layout",
+    "read_task",
+    "task_of_part",
     "verify",
     "write_layout",
 ]

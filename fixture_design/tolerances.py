@@ -175,3 +175,13 @@ PARALLEL_EDGES = 1e-9
 
 #: A modular fixture holds its part if its margin is above this [-]: what real fixtures have, and far above any tie.
 HELD = 1e-6
+
+#: Coefficient of friction that design takes where a part cannot be closed without [-]: steel on steel, not greased.
+USUAL_FRICTION = 0.2
+
+#: How far off the normals of candidates may be that design tries, one after the other [rad]: plane facets as they are,
+#: round surfaces that were fitted well, then what still leaves a margin; what is known less well decides nothing.
+NORMALS_KNOWN_TO = (0.0, 1e-3, 2e-2)
+
+#: A margin of closure that is good enough, so that accuracy counts before a larger one [-].
+GOOD_MARGIN = 1e-3

@@ -1,1 +1,21 @@
-"""Design: where the locators and clamps go."""
+"""Design: elements added, moved and removed until the conditions hold, and the proof that fewer do not."""
+
+from fixture_design.design.design import design
+from fixture_design.design.result import Bound, DesignResult
+from fixture_design.design.steps import Step
+from fixture_design.design.task import CandidateRules, Grid, Limits, Objective, Task
+from fixture_design.design.ways import Progress, Ways
+
+__all__ = [
+    "Bound",
+    "CandidateRules",
+    "DesignResult",
+    "Grid",
+    "Limits",
+    "Objective",
+    "Progress",
+    "Step",
+    "Task",
+    "Ways",
+    "design",
+]

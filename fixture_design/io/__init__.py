@@ -1,24 +1,35 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
+from fixture_design.io.csv_export import write_csv
+from fixture_design.io.design_record import design_to_dict
 from fixture_design.io.documents import Document, read_document
 from fixture_design.io.json_writer import dumps
-from fixture_design.io.layout_file import layout_from_data, read_layout, write_layout
+from fixture_design.io.layout_file import layout_from_data, layout_text, read_layout, write_layout
 from fixture_design.io.places import Place
 from fixture_design.io.problems import ContentError
 from fixture_design.io.schemas import json_schema, schema_names
+from fixture_design.io.task_file import TASK_ENDINGS, read_task, task_of_part
+from fixture_design.io.urdf_export import write_urdf
 from fixture_design.io.verdict_record import error_record, verdict_to_dict
 
 __all__ = [
+    "TASK_ENDINGS",
     "ContentError",
     "Document",
     "Place",
+    "design_to_dict",
     "dumps",
     "error_record",
     "json_schema",
     "layout_from_data",
+    "layout_text",
     "read_document",
     "read_layout",
+    "read_task",
     "schema_names",
+    "task_of_part",
     "verdict_to_dict",
+    "write_csv",
     "write_layout",
+    "write_urdf",
 ]

@@ -55,6 +55,11 @@ def write_layout(layout: Layout, path: str | Path) -> None:
     write_text(path, json_text(data) if path.suffix.lower() == ".json" else yaml_text(data))
 
 
+def layout_text(layout: Layout, folder: Path) -> str:
+    """The YAML text of a layout, as a file in ``folder`` would have it."""
+    return yaml_text(layout_data(layout, folder))
+
+
 def _layout(document: Document, path: Path) -> Layout:
     require_schema(document, "layout")
     record = validated(LayoutRecord, document)

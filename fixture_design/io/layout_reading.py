@@ -53,6 +53,11 @@ _METRES: dict[str, Callable[[float], float]] = {
 }
 
 
+def metres_of(units: str) -> Callable[[float], float]:
+    """What makes metres of a file's lengths."""
+    return _METRES[units]
+
+
 def layout_from_record(
     record: LayoutRecord, name: str, source: Path | None, folder: Path, places: Mapping[tuple[str, ...], str]
 ) -> Layout:
@@ -134,7 +139,7 @@ class _Converter:
             name=element.name,
             role=element.role,
             at=self._point(element.at),
-            tip=self._tip(element.tip),
+            tip=tip_from_record(element.tip, self.metres),
             axis=_vector(element.axis),
             tolerance=self._maybe_metres(element.tolerance),
             friction=element.friction,
@@ -143,22 +148,6 @@ class _Converter:
             fixed=element.fixed,
             stiffness=element.stiffness,
         )
-
-    def _tip(self, tip: TipRecord | None) -> Tip:
-        if tip is None:
-            return PointTip()
-        if tip.sphere is not None:
-            return SphereTip(self.metres(tip.sphere))
-        if tip.soft is not None:
-            return SoftTip(self.metres(tip.soft))
-        if tip.pad is not None and tip.along is not None:
-            return PadTip(self.metres(tip.pad[0]), self.metres(tip.pad[1]), read_only(tip.along))
-        if tip.line is not None and tip.along is not None:
-            return LineTip(self.metres(tip.line), read_only(tip.along))
-        if tip.pin is not None:
-            along = _vector(tip.along if tip.pin.along is None else tip.pin.along)
-            return PinTip(self.metres(tip.pin.diameter), self.metres(tip.pin.clearance), tip.pin.shape, along)
-        return PointTip()
 
     def body(self, body: BodyRecord) -> Body:
         return Body(body.name, body.role, self._file(body.urdf), self._pose(body.pose), body.friction)
@@ -186,6 +175,24 @@ class _Converter:
             lengths = {key: tuple(map(self.metres, pose[key])) for key in ("xyz", "xy") if key in pose}
             settings["part_pose"] = pose | lengths
         return settings
+
+
+def tip_from_record(tip: TipRecord | None, metres: Callable[[float], float]) -> Tip:
+    """The tip, its lengths made metres; a point where there is none."""
+    if tip is None:
+        return PointTip()
+    if tip.sphere is not None:
+        return SphereTip(metres(tip.sphere))
+    if tip.soft is not None:
+        return SoftTip(metres(tip.soft))
+    if tip.pad is not None and tip.along is not None:
+        return PadTip(metres(tip.pad[0]), metres(tip.pad[1]), read_only(tip.along))
+    if tip.line is not None and tip.along is not None:
+        return LineTip(metres(tip.line), read_only(tip.along))
+    if tip.pin is not None:
+        along = _vector(tip.along if tip.pin.along is None else tip.pin.along)
+        return PinTip(metres(tip.pin.diameter), metres(tip.pin.clearance), tip.pin.shape, along)
+    return PointTip()
 
 
 def _geometry(part: PartRecord) -> tuple[Literal["urdf", "mesh", "step", "polygon"], str | None]:

@@ -83,7 +83,7 @@ def test_notes_and_answers_are_the_tables(command: Callable, tmp_path: Path) -> 
             assert f"required of {row['group']}: {row['require'].replace('_', ' ')}: {row['verdict']}" in table
 
 
-@pytest.mark.parametrize("name", ["layout", "verdict"])
+@pytest.mark.parametrize("name", ["layout", "task", "verdict"])
 def test_schemas(command: Callable, name: str) -> None:
     ran = command("schema", name)
     schema = parsed(ran.out)

@@ -1,0 +1,131 @@
+"""`fixture-design design TASK or PART`: a fixture for a part."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fixture_design.cli.design_report import design_in_words
+from fixture_design.cli.exit_codes import ExitCode, of_answer
+from fixture_design.cli.messages import say
+from fixture_design.design import DesignResult, Task
+from fixture_design.errors import FileFormatError, InputError, UnsupportedError
+from fixture_design.io import TASK_ENDINGS, design_to_dict, dumps, layout_text, read_task, task_of_part, write_layout
+from fixture_design.io import write_csv as save_csv
+from fixture_design.io import write_urdf as save_urdf
+
+_OUT = typer.Option("--out", "-o", help="Layout file to write (YAML, or JSON by its ending); default: stdout.")
+
+
+def design(
+    task_or_part: Annotated[Path, typer.Argument(help="Task file, or a part (STL, OBJ, ..., URDF).", readable=False)],
+    out: Annotated[Path | None, _OUT] = None,
+    scale: Annotated[float, typer.Option(help="Factor that makes a part file's vertices metres.")] = 1.0,
+    seed: Annotated[int, typer.Option(help="Of the random numbers; the same one gives the same layout.", min=0)] = 0,
+    urdf: Annotated[Path | None, typer.Option(help="Elements with stem and body, as URDF.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="Contacts as a table.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
+) -> None:
+    """Find a layout that locates a part, lets it out and closes it, with the fewest elements; and say why they are few.
+
+    Exit code: 0 a layout that holds, 1 there is none, 3 none was found or it is undecided, 2 bad input.
+    """
+    task = _task(task_or_part, scale)
+    for path in (out, urdf, csv):
+        _check_target(path, task)
+    if urdf is not None and task.space == "planar":
+        raise UnsupportedError("a planar layout has no URDF form", source=task.source, expected="`--csv`")
+    from fixture_design.design import design as design_layout  # noqa: PLC0415 - after the arguments are known good
+
+    with _interruptible() as cancelled:
+        try:
+            result = design_layout(task, seed=seed, progress=_shown, cancelled=cancelled)
+        except InputError as error:
+            raise error.within(task_or_part) from error
+        finally:
+            _shown("", 1.0)
+        _write(result, out, urdf, csv)
+        _report(result, out, as_json)
+        raise typer.Exit(ExitCode.INTERRUPTED if cancelled() else of_answer(result.satisfied))
+
+
+def _task(path: Path, scale: float) -> Task:
+    if path.suffix.lower() not in TASK_ENDINGS:
+        return task_of_part(path, scale)
+    if scale != 1:
+        raise FileFormatError("`--scale` is for part files", source=path, expected="`scale` in the task's `part`")
+    return read_task(path)
+
+
+def _check_target(path: Path | None, task: Task) -> None:
+    """An output must not be one of the inputs, and its folder must be there, before any work is done."""
+    if path is None:
+        return
+    start = task.start.source if task.start is not None else None
+    for given in (task.source, task.part.file, start):
+        if given is not None and os.path.realpath(given) == os.path.realpath(path):
+            raise FileFormatError("this would overwrite an input", source=path, expected="another name")
+    if not path.absolute().parent.is_dir():
+        raise FileFormatError("the folder to write to is not there", source=path, expected="an existing folder")
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Ctrl-C once asks for the best so far; twice ends the program as ever."""
+    asked = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield asked.is_set
+        return
+    before = signal.getsignal(signal.SIGINT)
+
+    def ask(number: int, frame: object) -> None:
+        asked.set()
+        signal.signal(signal.SIGINT, before)
+
+    signal.signal(signal.SIGINT, ask)
+    try:
+        yield asked.is_set
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _shown(words: str, part: float) -> None:
+    """Progress on stderr, in one line that the next one replaces; nothing where stderr is a file."""
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r\033[K{words}" + (f" ({part:.0%})" if words else ""))
+        sys.stderr.flush()
+
+
+def _write(result: DesignResult, out: Path | None, urdf: Path | None, csv: Path | None) -> None:
+    if result.layout is None or result.verdict is None:
+        return
+    if out is not None:
+        write_layout(result.layout, out)
+    if urdf is not None:
+        save_urdf(result.layout, result.verdict, urdf)
+    if csv is not None:
+        save_csv(result.verdict, csv)
+
+
+def _report(result: DesignResult, out: Path | None, as_json: bool) -> None:
+    """JSON alone; or words, which make way for the layout where that goes to stdout."""
+    folder = Path.cwd() if out is None else out.absolute().parent
+    if as_json:
+        typer.echo(dumps(design_to_dict(result, folder)))
+        return
+    aside = out is None and result.layout is not None
+    for line in design_in_words(result):
+        if aside:
+            say(line)
+        else:
+            typer.echo(line)
+    if aside and result.layout is not None:
+        typer.echo(layout_text(result.layout, folder), nl=False)

@@ -1,0 +1,84 @@
+"""A design in words: what was found, how it came about, and what is proven about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fixture_design.arrays import Point, Vector
+from fixture_design.cli.messages import printable
+from fixture_design.design import Bound, DesignResult, Step
+from fixture_design.layout import Answer
+from fixture_design.viewing.motion_words import motion_in_words
+
+_OUTCOME = {
+    Answer.YES: "the requirements hold",
+    Answer.NO: "there is no layout that does what is asked",
+    Answer.UNDECIDED: "undecided",
+}
+
+
+def design_in_words(result: DesignResult) -> Iterator[str]:
+    """Lines for a person."""
+    reference, length = _view(result)
+    for step in result.steps:
+        yield printable(_step_in_words(step, reference, length))
+    if result.free is not None:
+        yield f"free whatever touches the part: {motion_in_words(result.free, reference, length)}"
+    if result.bound is not None:
+        yield _bound_in_words(result.bound)
+    if result.out is not None:
+        yield f"the part comes out along [{', '.join(f'{x:.3g}' for x in result.out)}]"
+    if result.accuracy is not None and result.best_accuracy is not None:
+        yield f"accuracy {_accuracy_in_words(result.accuracy, result.best_accuracy)}"
+    if result.margin is not None:
+        yield f"margin of closure {result.margin:.3g}"
+    for note in result.notes:
+        yield printable(f"note: {note}")
+    outcome = _OUTCOME[result.satisfied]
+    yield printable(f"{outcome}: {result.reason}" if result.reason else outcome)
+
+
+def _view(result: DesignResult) -> tuple[Point, float]:
+    """Where motions are seen from, and the size of the part."""
+    if result.verdict is not None:
+        return result.verdict.reference, result.verdict.length
+    planar = result.free is not None and len(result.free) == 3
+    return np.zeros(2 if planar else 3), 1.0
+
+
+def _step_in_words(step: Step, reference: Point, length: float) -> str:
+    motion = _motion(step.motion, reference, length)
+    others = ", ".join(step.circuit)
+    why = {
+        "unnoticed": f"notices {motion}",
+        "free": f"stops {motion}",
+        "bound": f"{others} constrain both ways",
+        "twice": f"{others} locate the same thing twice",
+        "in the way": "the part does not come out past it",
+        "spare": "the others do without it",
+    }[step.why]
+    return f"{step.action} {step.element}: {why}"
+
+
+def _motion(motion: Vector | None, reference: Point, length: float) -> str:
+    return "what is left" if motion is None else motion_in_words(motion, reference, length)
+
+
+def _bound_in_words(bound: Bound) -> str:
+    roles = f" ({bound.locators} locators, {bound.clamps} clamps)" if bound.locators else ""
+    least = f"at least {bound.elements} elements{roles}"
+    among = f"among {bound.candidates} candidates{'' if bound.complete else ' in the directions that were tried'}"
+    if bound.gap == 0:
+        return f"{bound.found} elements, the fewest {among}" + (" (proven)" if bound.proven else "")
+    if bound.found is None:
+        return f"{least} are needed {among}"
+    return f"{bound.found} elements; {least} are needed {among}: {bound.gap} more than proven"
+
+
+def _accuracy_in_words(accuracy: float, best: float) -> str:
+    """How far it may be from the best one."""
+    return (
+        f"{accuracy:.4g}, and no locators among these candidates have less than {best:.4g} ({accuracy / best - 1:.1%})"
+    )

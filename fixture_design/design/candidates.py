@@ -1,0 +1,185 @@
+"""Candidates: what may become an element of the fixture, as arrays.
+
+A candidate has one point and one unit normal; an element that a start layout brings may have several (a pad, a pin).
+Rows are face vectors [n; (x - center) X n / length], scaled to length one: a candidate *stops* a motion u if one of its
+rows has d . u > 0, and candidates close if together they stop every motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float
+
+from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
+from fixture_design.contacts import Contact, Provenance, Scale, face_vectors, tangents, unit_normal
+from fixture_design.layout import Element
+from fixture_design.tolerances import DEFAULT, Tolerances
+
+#: For each candidate its points, normals or rows, as many for each: shape (n, k, ...); unused ones are zero.
+Several = Float[np.ndarray, "n k _"]
+
+#: Edges of the pyramids inside friction cones, while searching [-]; the verdict on the result refines them.
+EDGES = 8
+
+
+@runtime_checkable
+class Spots(Protocol):
+    """Points on a part's surface with outward unit normals, as `geometry.SurfacePoints` has them."""
+
+    @property
+    def points(self) -> Points: ...
+    @property
+    def normals(self) -> Points: ...
+    @property
+    def features(self) -> tuple[str, ...]: ...
+    @property
+    def provenance(self) -> tuple[Provenance, ...]: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """n candidates in W.
+
+    Attributes:
+        points, normals: shape (n, k, p) [m, -]; a zero normal says nothing.
+        features: what each of them touches.
+        errors: how far the normals may be off [rad].
+        friction: coefficient of each, used only where rows with friction are asked for.
+        elements: the element that a candidate is already; None for those that are none yet.
+        scale: reference point and length of the rows.
+    """
+
+    points: Several
+    normals: Several
+    features: tuple[str, ...]
+    errors: Weights
+    friction: Weights
+    elements: tuple[Element | None, ...]
+    scale: Scale
+
+    @classmethod
+    def of(cls, spots: Spots, scale: Scale, friction: float = 0.0) -> Candidates:
+        """One candidate a spot."""
+        count = len(spots.points)
+        errors = np.array([origin.normal_error for origin in spots.provenance], dtype=np.float64)
+        points, normals = np.array(spots.points)[:, None, :], np.array(spots.normals)[:, None, :]
+        return cls(points, normals, spots.features, errors, np.full(count, friction), (None,) * count, scale)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @property
+    def dimension(self) -> int:
+        """3 in the plane, 6 in space."""
+        return 3 if self.points.shape[2] == 2 else 6
+
+    @cached_property
+    def rows(self) -> Several:
+        """Unit face vectors of the normals, shape (n, k, d)."""
+        return self._unit(self.points, self.normals)
+
+    @cached_property
+    def rows_with_friction(self) -> Several:
+        """Unit face vectors of the edges of the friction cones, shape (n, k e, d); exact in the plane, inside else."""
+        n, _, p = self.normals.shape
+        first, second, around = np.zeros_like(self.normals), np.zeros_like(self.normals), np.array([0, np.pi])
+        if p == 2:
+            first = np.stack([-self.normals[..., 1], self.normals[..., 0]], axis=-1)
+        else:
+            around = 2 * np.pi * np.arange(EDGES) / EDGES
+            for index in np.argwhere(self.normals.any(axis=2)).tolist():
+                first[tuple(index)], second[tuple(index)] = tangents(self.normals[tuple(index)])
+        turned = np.cos(around)[:, None] * first[:, :, None] + np.sin(around)[:, None] * second[:, :, None]
+        edges = self.normals[:, :, None] + self.friction[:, None, None, None] * turned
+        points = np.broadcast_to(self.points[:, :, None], edges.shape)
+        return self._unit(points.reshape(n, -1, p), edges.reshape(n, -1, p))
+
+    def chosen(self, which: Indices | Mask) -> Candidates:
+        """Some of them, in that order."""
+        numbers = np.arange(len(self))[which]
+        return replace(
+            self,
+            points=self.points[numbers],
+            normals=self.normals[numbers],
+            features=tuple(self.features[number] for number in numbers),
+            errors=self.errors[numbers],
+            friction=self.friction[numbers],
+            elements=tuple(self.elements[number] for number in numbers),
+        )
+
+    def with_elements(self, found: Sequence[tuple[Element, Sequence[Contact]]]) -> Candidates:
+        """These, and elements with the contacts they have: appended, so that indices stay.
+
+        Alternatives (a tip on a convex edge) stop nothing for certain, whichever the part takes; they count as no row.
+        """
+        if not found:
+            return self
+        several = [[_certain(contact) for contact in contacts] for _, contacts in found]
+        most = max(self.points.shape[1], *(sum(map(len, one)) for one in several))
+        p = self.points.shape[2]
+        points, normals = np.zeros((len(found), most, p)), np.zeros((len(found), most, p))
+        for index, (element, contacts) in enumerate(found):
+            points[index] = element.at
+            given = [(c.point, n) for c, kept in zip(contacts, several[index], strict=True) for n in kept]
+            for place, (point, normal) in enumerate(given):
+                points[index, place], normals[index, place] = point, normal
+        wider = ((0, 0), (0, most - self.points.shape[1]), (0, 0))
+        return replace(
+            self,
+            points=np.concatenate([np.pad(self.points, wider, mode="edge"), points]),
+            normals=np.concatenate([np.pad(self.normals, wider), normals]),
+            features=(*self.features, *(contacts[0].feature or element.name for element, contacts in found)),
+            errors=np.append(self.errors, [max(c.provenance.normal_error for c in one) for _, one in found]),
+            friction=np.append(self.friction, [one[0].friction for _, one in found]),
+            elements=(*self.elements, *(element for element, _ in found)),
+        )
+
+    def with_friction(self, friction: float) -> Candidates:
+        """The same, where those that are no elements yet have this coefficient, and elements without one too."""
+        bare = np.array([e is None or e.friction is None for e in self.elements])
+        return replace(self, friction=np.where(bare, friction, self.friction))
+
+    @cached_property
+    def tolerances(self) -> Tolerances:
+        """What counts as zero: a row may be off by what its normal may be, times sqrt(2) at the edge of the part."""
+        error = float(self.errors.max(initial=0.0)) * float(np.sqrt(2))
+        return Tolerances(max(DEFAULT.tie, error / DEFAULT.band), DEFAULT.band)
+
+    @cached_property
+    def freedoms(self) -> int:
+        """How many motions they can notice at all: 6 in space, 5 for a shaft, 3 for a ball."""
+        values = np.linalg.svd(self.rows.reshape(-1, self.dimension), compute_uv=False)
+        return int((values > self.tolerances.near * values[0]).sum())
+
+    @cached_property
+    def places(self) -> Points:
+        """One point for each, shape (n, p) [m]."""
+        return np.array(self.points[:, 0])
+
+    def _unit(self, points: Several, normals: Several) -> Several:
+        n, k, p = normals.shape
+        levers = (points - self.scale.reference).reshape(-1, p)
+        rows = face_vectors(levers, normals.reshape(-1, p))
+        rows[:, p:] /= self.scale.length
+        lengths = np.linalg.norm(rows, axis=1, keepdims=True)
+        return np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0).reshape(n, k, -1)
+
+
+def _certain(contact: Contact) -> list[Point]:
+    """The unit normals that the part may not enter, whatever alternatives it takes."""
+    return [unit_normal(clause[0]) for clause in contact.clauses if len(clause) == 1]
+
+
+def stops(rows: Several, motion: Vector, zero: float) -> Mask:
+    """Which candidates stop a unit motion, by more than ``zero``: shape (n,)."""
+    return (rows @ motion).max(axis=1) > zero
+
+
+def flat(rows: Several, which: Sequence[int] | Indices) -> Rows:
+    """The rows of some candidates, one under the other."""
+    return np.ascontiguousarray(rows[np.asarray(which, dtype=np.int64)].reshape(-1, rows.shape[2]))

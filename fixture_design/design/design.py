@@ -1,0 +1,195 @@
+"""From a task to a layout that holds: what the command `fixture-design design` does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from fixture_design.arrays import Mask, Vector
+from fixture_design.design.candidates import Candidates
+from fixture_design.design.drawing_up import layout_of, named
+from fixture_design.design.features import features_of
+from fixture_design.design.found import Found, Outcome
+from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
+from fixture_design.design.problem import Problem
+from fixture_design.design.result import Bound, DesignResult
+from fixture_design.design.search import search
+from fixture_design.design.shortfall import bound_of, refused, without_layout
+from fixture_design.design.start import Start, begun
+from fixture_design.design.steps import Step, additions, in_world
+from fixture_design.design.task import Task
+from fixture_design.design.unstoppable import free_for_certain
+from fixture_design.design.ways import Progress, Ways
+from fixture_design.errors import GeometryError
+from fixture_design.layout import Answer
+
+_RANK = {Answer.YES: 2, Answer.UNDECIDED: 1, Answer.NO: 0}
+
+
+def design(
+    task: Task,
+    ways: Ways | None = None,
+    *,
+    seed: int = 0,
+    progress: Progress = lambda words, part: None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> DesignResult:
+    """The best layout with the fewest elements that does what a task asks, verified; or why there is none.
+
+    Args:
+        ways: geometry and verification; by default of the task's part.
+        seed: another one gives other candidates and restarts; the same one the same layout.
+        progress: told what is being done.  cancelled: once it says True the best so far is the result.
+
+    Raises:
+        InputError: the part or the start layout cannot be used; the rules leave no candidates.
+
+    Example:
+        >>> design(read_task("bracket.task.yaml")).layout        # doctest: +SKIP
+    """
+    ways = ways or _ways_of(task)
+    progress("candidates", 0.0)
+    candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)
+    best: DesignResult | None = None
+    free: Vector | None = None
+    for plan in plans(task, ways):
+        for some in by_certainty(candidates):
+            for keep_all in (True, False) if _may_let_go(task) else (True,):
+                found = _designed(task, ways, some, plan, keep_all, seed, progress, cancelled)
+                if left_out := len(candidates) - len(some):
+                    note = f"{left_out} candidates on round or uncertain surfaces were left out"
+                    found = replace(found, notes=(*found.notes, note))
+                best = found if best is None else _better(best, found)
+                if best.satisfied is Answer.YES or cancelled():
+                    return best if free is None else replace(best, free=free)
+        if best is None or best.layout is not None or best.free is None:
+            break
+        free = best.free  # the next plan has to live with it
+    assert best is not None  # there is at least one plan, and candidates for it
+    return best
+
+
+def _ways_of(task: Task) -> Ways:
+    from fixture_design.verification.surface import PartSurface  # noqa: PLC0415 - only where no fake is given
+
+    return PartSurface(task.part, task.surface_gap)
+
+
+def _may_let_go(task: Task) -> bool:
+    return task.start is not None and any(not e.fixed for e in task.start.elements if e.role in ("locator", "clamp"))
+
+
+def _better(first: DesignResult, second: DesignResult) -> DesignResult:
+    """The one that does more; of two without a layout the later one, which looked at more."""
+    if first.layout is None:
+        return second
+    return first if second.layout is None or _RANK[first.satisfied] > _RANK[second.satisfied] else second
+
+
+def _designed(
+    task: Task,
+    ways: Ways,
+    candidates: Candidates,
+    plan: Plan,
+    keep_all: bool,
+    seed: int,
+    progress: Progress,
+    cancelled: Callable[[], bool],
+) -> DesignResult:
+    """One attempt: among these candidates, with this plan."""
+    locators, everything = plan.require.get("locators", ()), plan.require.get("all", ())
+    leaves = bool(set(LEAVING) & set(locators)) or task.require is None or task.limits.loading is not None
+    start = begun(task, candidates.with_friction(plan.friction), ways, leaves, keep_all)
+    closes = "with friction" if "force_closure" in everything else None
+    problem = Problem(
+        start.candidates, task.limits, task.objective, start.locators, start.others, start.spare,
+        locates=bool(set(LOCATING) & set(locators)), leaves=leaves,
+        closes="without friction" if "form_closure" in everything else closes,
+        features=features_of(task, start.candidates), cancelled=cancelled,
+    )  # fmt: skip
+    if start.conflict:
+        reason = f"{', '.join(start.conflict)} must stay, and let the part neither in nor out"
+        return DesignResult(Answer.NO, None, steps=start.steps, reason=reason)
+    if problem.never_stopped is not None:
+        return _unstoppable(task, ways, problem, candidates, start)
+    if "deterministic" in locators and problem.candidates.freedoms < problem.candidates.dimension:
+        free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
+        return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
+    outcome = search(problem, seed, progress)
+    bound = bound_of(problem, outcome)
+    if outcome.found is None or refused(task, outcome.found):
+        return without_layout(problem, outcome, bound, start)
+    try:
+        return _drawn_up(task, ways, problem, outcome, bound, start, plan)
+    except GeometryError:
+        useless = _useless(task, ways, problem, outcome.found)
+        if not useless.any():
+            raise
+        kept = candidates.chosen(~useless[: len(candidates)])
+        return _designed(task, ways, kept, plan, keep_all, seed, progress, cancelled)
+
+
+def _unstoppable(task: Task, ways: Ways, problem: Problem, candidates: Candidates, start: Start) -> DesignResult:
+    """No candidate stops a motion; whether that is certain where normals are not known exactly is asked again."""
+    assert problem.never_stopped is not None
+    free = in_world(problem.never_stopped, candidates.scale)
+    reason = f"no candidate stops a motion; {len(candidates)} were there"
+    if not candidates.errors.any():
+        return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
+    certain = (
+        free_for_certain(replace(task, start=None), ways, candidates) if problem.closes != "with friction" else None
+    )
+    if certain is not None:
+        return DesignResult(Answer.NO, None, steps=start.steps, free=certain, reason=reason)
+    reason = f"{reason}, and some of their normals are not known exactly"
+    return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=reason)
+
+
+def _useless(task: Task, ways: Ways, problem: Problem, found: Found) -> Mask:
+    """Candidates that turn out not to be places for an element (where solids overlap), shape (n,)."""
+    useless = np.zeros(len(problem.candidates), dtype=bool)
+    for index in np.concatenate([found.locators, found.clamps]).tolist():
+        if problem.candidates.elements[index] is None:
+            place = np.array([index])
+            names = {index: "candidate"}
+            alone = layout_of(replace(task, start=None), problem.candidates, place, place[:0], names, {}, 0.0)
+            try:
+                ways.contacts(alone)
+            except GeometryError:
+                useless[index] = True
+    return useless
+
+
+def _drawn_up(
+    task: Task, ways: Ways, problem: Problem, outcome: Outcome, bound: Bound | None, start: Start, plan: Plan
+) -> DesignResult:
+    """The layout of what was found, with its verdict and its record."""
+    found = outcome.found
+    assert found is not None
+    taken = [element.name for element in problem.candidates.elements if element is not None]
+    names = named(problem.candidates, found.locators, found.clamps, taken)
+    layout = layout_of(task, problem.candidates, found.locators, found.clamps, names, plan.require, plan.friction)
+    verdict = ways.verify(layout)
+    answer = Answer.YES if verdict.satisfied is None else verdict.satisfied
+    spare = tuple(Step("removed", start.name(i), "spare") for i in problem.spare if i not in found.clamps)
+    closure = verdict.groups["all"].findings.get(
+        "force_closure" if problem.closes == "with friction" else "form_closure"
+    )
+    reason = plan.reason if answer is Answer.YES else "the layout that was found does not verify"
+    return DesignResult(
+        # a layout that fails does not prove that none holds
+        Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
+        (*start.steps, *spare, *additions(problem, found.locators, found.clamps, names)), bound,
+        found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
+        reason=reason, notes=tuple(_notes(task, problem)),
+    )  # fmt: skip
+
+
+def _notes(task: Task, problem: Problem) -> Iterator[str]:
+    elements = [problem.candidates.elements[index] for index in problem.kept.tolist()]
+    if kept := [element.name for element in elements if element is not None and not element.fixed]:
+        yield f"the bounds are those of layouts that keep {', '.join(kept)}"
+    if "preload" in task.objective:
+        yield "the objective `preload` is not evaluated by this version; the margin of closure stood for it"

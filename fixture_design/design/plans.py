@@ -1,0 +1,59 @@
+"""What is asked for, in which order it is tried, and among which candidates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from fixture_design.design.candidates import Candidates
+from fixture_design.design.task import Task
+from fixture_design.design.ways import Ways
+from fixture_design.errors import GeometryError
+from fixture_design.layout import Requirement
+from fixture_design.tolerances import NORMALS_KNOWN_TO, USUAL_FRICTION
+
+Require = Mapping[str, tuple[Requirement, ...]]
+
+#: Requirements of locators that design meets by determining the part, and by a straight way out.
+LOCATING: tuple[Requirement, ...] = ("deterministic", "strongly_accessible", "accessible", "accurate")
+LEAVING: tuple[Requirement, ...] = ("loadable",)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is asked for, and why, if it is not what was asked for first."""
+
+    require: Require
+    friction: float
+    reason: str | None = None
+
+
+def plans(task: Task, ways: Ways) -> Iterator[Plan]:
+    """What the task requires; for a bare part closure without friction, then with friction, where it may spin."""
+    if task.require is not None:
+        yield Plan(task.require, task.friction)
+        return
+    leaving: tuple[Requirement, ...] = tuple(word for word in LEAVING if word in ways.answers)
+    without: Require = {"locators": ("deterministic", "strongly_accessible", *leaving), "all": ("form_closure",)}
+    yield Plan(without, task.friction)
+    reason = "no layout without friction closes this part; with friction one does, and the locators let it move freely"
+    rubbing: Require = {"locators": ("strongly_accessible", *leaving), "all": ("force_closure",)}
+    yield Plan(
+        rubbing,
+        task.friction or USUAL_FRICTION,
+        f"{reason} (coefficient {task.friction or USUAL_FRICTION:g})",
+    )
+
+
+def by_certainty(candidates: Candidates) -> Iterator[Candidates]:
+    """Candidates whose normals are known best; then those known less well too, as far as that adds any.
+
+    A group that cannot notice all that the next one can is left out: the end faces of a shaft are exact, and alone they
+    are no place for its locators.
+    """
+    groups = [candidates.chosen(candidates.errors <= error) for error in NORMALS_KNOWN_TO]
+    groups = [one for k, one in enumerate(groups) if len(one) and (k == 0 or len(one) > len(groups[k - 1]))]
+    if not groups:
+        raise GeometryError("no candidate has a normal that is known well enough", expected="facets that are flat")
+    most = max(one.freedoms for one in groups[: len(NORMALS_KNOWN_TO) - 1])
+    yield from (one for one in groups if one.freedoms >= most)

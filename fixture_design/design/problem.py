@@ -1,0 +1,98 @@
+"""A task as the search sees it: arrays, indices, and what is asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fixture_design.arrays import Indices, Mask, Points, Rows, Vector
+from fixture_design.design.candidates import Candidates, Several
+from fixture_design.design.hitting import free_motion
+from fixture_design.design.locating import Features, apart
+from fixture_design.design.task import Limits, Objective
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is searched for.
+
+    Attributes:
+        candidates: all of them, elements of the start layout last.
+        locators, clamps: indices of elements of the start that stay; clamps are all that are no locators.
+        spare: indices of clamps of the start that may leave, preferred to new ones.
+        locates: whether the locators must determine the part, as far as any candidates can.
+        leaves: whether the part must come out of the locators in a straight line.
+        closes: None, or whether all must close, and whether "with friction".
+        features: what accuracy is measured by; None for the volume.
+        cancelled: asked now and then.
+    """
+
+    candidates: Candidates
+    limits: Limits
+    objective: tuple[Objective, ...]
+    locators: tuple[int, ...] = ()
+    clamps: tuple[int, ...] = ()
+    spare: tuple[int, ...] = ()
+    locates: bool = True
+    leaves: bool = True
+    closes: str | None = "without friction"
+    features: Features | None = None
+    cancelled: Callable[[], bool] = lambda: False
+
+    @cached_property
+    def new(self) -> Indices:
+        """The candidates that are no elements yet."""
+        return np.array([i for i, e in enumerate(self.candidates.elements) if e is None], dtype=np.int64)
+
+    @cached_property
+    def clampable(self) -> Indices:
+        """Those that may become a clamp: new ones, and clamps of the start."""
+        return np.concatenate([self.new, np.array(self.spare, dtype=np.int64)])
+
+    @property
+    def kept(self) -> Indices:
+        """All elements that stay."""
+        return np.array([*self.locators, *self.clamps], dtype=np.int64)
+
+    @cached_property
+    def closing_rows(self) -> Several:
+        """The rows that must close, shape (n, k, d)."""
+        return self.candidates.rows_with_friction if self.closes == "with friction" else self.candidates.rows
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Unit face vectors of all normals, one under the other: row r is of candidate r // `each`."""
+        return np.ascontiguousarray(self.candidates.rows.reshape(-1, self.candidates.dimension))
+
+    @property
+    def each(self) -> int:
+        return self.candidates.rows.shape[1]
+
+    @cached_property
+    def places(self) -> Points:
+        """For each of `rows` its candidate's place."""
+        return np.repeat(self.candidates.places, self.each, axis=0)
+
+    @cached_property
+    def never_stopped(self) -> Vector | None:
+        """A unit motion that not even all candidates stop; None where they do, or nothing has to close."""
+        if self.closes is None:
+            return None
+        rows = np.ascontiguousarray(self.closing_rows.reshape(-1, self.candidates.dimension))
+        return free_motion(rows, self.candidates.tolerances)
+
+    def rows_of(self, candidates: Indices | tuple[int, ...]) -> Indices:
+        """Numbers of the rows of candidates that say something."""
+        numbers = (np.asarray(candidates, dtype=np.int64)[:, None] * self.each + np.arange(self.each)).ravel()
+        return numbers[self.rows[numbers].any(axis=1)]
+
+    def owners(self, rows: Indices) -> Indices:
+        """The candidates of rows, each once."""
+        return np.unique(rows // self.each)
+
+    def joins(self, pool: Indices, chosen: Indices | tuple[int, ...] | list[int]) -> Mask:
+        """Which of a pool of candidates are far enough from all chosen ones."""
+        return apart(self.candidates.places, np.asarray(chosen, dtype=np.int64), pool, self.limits.spacing)

@@ -1,0 +1,91 @@
+"""Regions: among which candidates locators have a straight way out, and how few clamps could close with them.
+
+The bound of a region lets *all* of its candidates be locators: what does not close with them does not close with some.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fixture_design.arrays import Indices, Mask, Point
+from fixture_design.design.hitting import Hitting, fewest_stopping
+from fixture_design.design.problem import Problem
+from fixture_design.design.straight import cells, different
+
+#: Regions that are bounded at most.
+MOST_BOUNDED = 64
+
+#: A region that needs this many clamps more than another one need not be known any better.
+_AND_MORE = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Candidates among which locators have a straight way out, and how few clamps could close with them."""
+
+    out: Point | None
+    pool: Indices
+    clamps: Hitting | None
+
+    @property
+    def bound(self) -> int:
+        return 0 if self.clamps is None else self.clamps.bound
+
+
+def regions_of(problem: Problem, seed: int) -> tuple[list[Region], bool]:
+    """The regions that have enough locators, those with the fewest clamps first; and whether these are all."""
+    if not problem.leaves:
+        clamps = None if problem.closes is None else _clamps_of_all(problem)
+        return [Region(None, problem.new, clamps)], True
+    several = problem.candidates.normals
+    flat_normals = several.reshape(-1, several.shape[2])
+    said: Mask = np.any(flat_normals, axis=1)
+    unit, which = different(flat_normals[said])
+    loading = problem.limits.loading
+    found, complete = cells(unit, None if loading is None else -loading, seed)
+    regions = []
+    for cell in found[:MOST_BOUNDED]:
+        leaves = np.ones(len(flat_normals), dtype=bool)
+        leaves[said] = cell.leaves[which]
+        allowed: Mask = np.all(leaves.reshape(len(several), -1), axis=1)
+        pool = np.array([index for index in problem.new if allowed[index]], dtype=np.int64)
+        if not allowed[list(problem.locators)].all() or not _enough(problem, pool):
+            continue
+        if problem.closes is None:
+            regions.append(Region(cell.direction, pool, None))
+            continue
+        least = min((region.bound for region in regions), default=np.inf)
+        clamps = _bounded(problem, pool, float(least + _AND_MORE))
+        if clamps.chosen is not None or not clamps.complete:
+            regions.append(Region(cell.direction, pool, clamps))
+    regions.sort(key=lambda region: (region.bound, -len(region.pool)))
+    return regions, complete and len(found) <= MOST_BOUNDED
+
+
+def _enough(problem: Problem, pool: Indices) -> bool:
+    """Whether locators from the pool can notice all that the candidates together can."""
+    numbers = problem.rows_of(np.concatenate([pool, np.array(problem.locators, dtype=np.int64)]))
+    if len(numbers) < problem.candidates.freedoms:
+        return False
+    values = np.linalg.svd(problem.rows[numbers], compute_uv=False)
+    return int((values > problem.candidates.tolerances.near * values[0]).sum()) >= problem.candidates.freedoms
+
+
+def _bounded(problem: Problem, pool: Indices, enough: float) -> Hitting:
+    """The fewest clamps that close with every locator that is allowed, or only that they are ``enough`` in number."""
+    base = np.concatenate([pool, problem.kept])
+    others = np.setdiff1d(problem.clampable, base)
+    found = fewest_stopping(
+        problem.closing_rows, base, others, tolerances=problem.candidates.tolerances,
+        enough=enough - len(problem.clamps), cancelled=problem.cancelled,
+    )  # fmt: skip
+    return Hitting(found.chosen, found.bound + len(problem.clamps), found.free, found.cuts, found.complete)
+
+
+def _clamps_of_all(problem: Problem) -> Hitting:
+    """Without a way out: d + 1 rows at least where there is no friction, so one clamp more than freedoms."""
+    needs = 1 if problem.closes == "without friction" else 0
+    dimension = problem.candidates.dimension
+    return Hitting(problem.new[:0], max(needs, len(problem.clamps)), None, np.empty((0, dimension)))

@@ -1,0 +1,71 @@
+"""What a design is: a layout that holds, how it came about, and how much better another one could be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fixture_design.arrays import Point, Vector
+from fixture_design.design.steps import Step
+from fixture_design.layout import Answer, Layout, Verdict
+
+
+@dataclass(frozen=True)
+class Bound:
+    """How few elements could do.
+
+    Attributes:
+        locators, clamps: no layout that does what is asked has fewer; counted with those that must stay.
+        elements: nor fewer in all.
+        found: elements of the layout; None without one.
+        complete: whether that is so in all directions out, or only in those that were tried.
+        candidates: among how many it holds.
+    """
+
+    locators: int
+    clamps: int
+    elements: int
+    found: int | None
+    complete: bool
+    candidates: int
+
+    @property
+    def gap(self) -> int | None:
+        """How many elements fewer there might be; 0: the layout has the fewest."""
+        return None if self.found is None else self.found - self.elements
+
+    @property
+    def proven(self) -> bool:
+        return self.complete and self.gap == 0
+
+
+@dataclass(frozen=True, eq=False)
+class DesignResult:
+    """The outcome of a design.
+
+    Attributes:
+        satisfied: yes: the layout's verdict is; no: no layout does what is asked, proven; undecided: none was found,
+            or its verdict is undecided.
+        layout, verdict: None where there is none.
+        steps: how it came from the start to this.
+        bound: None where nothing could be said.
+        out: the direction in W in which the part comes out of the locators.
+        accuracy: worst error at a key feature for errors of 1 along the locators' normals, in its tolerances; without
+            features 1 / volume of the locators' rows.  best_accuracy: no locators have a smaller one [-]; None unknown.
+        margin: of closure, in the verdict's scale; None where nothing has to close.
+        free: [dx; dtheta] about W's origin, a motion that no candidate stops; None where there is none.
+        reason: why there is no layout, or not the one that was asked for.
+        notes: for people.
+    """
+
+    satisfied: Answer
+    layout: Layout | None
+    verdict: Verdict | None = None
+    steps: tuple[Step, ...] = ()
+    bound: Bound | None = None
+    out: Point | None = None
+    accuracy: float | None = None
+    best_accuracy: float | None = None
+    margin: float | None = None
+    free: Vector | None = None
+    reason: str | None = None
+    notes: tuple[str, ...] = ()

@@ -1,0 +1,203 @@
+"""The search for the best of the fewest: straight ways out, locators within one of them, clamps against these.
+
+For each cell of directions (`straight`) the number of clamps has a lower bound: those that close with *all* locators
+that the cell allows. Cells are searched in the order of their bounds, and left alone where they cannot be better than
+what is there already; so the smallest bound of all cells proves the number of elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from fixture_design.arrays import Indices
+from fixture_design.design.accuracy_bounds import largest_volume, least_error
+from fixture_design.design.anything import closing_elements
+from fixture_design.design.clamping import closes, held_best, locators_for, margins
+from fixture_design.design.closing import fewest_closing
+from fixture_design.design.found import Found, Outcome
+from fixture_design.design.hitting import fewest_stopping
+from fixture_design.design.locating import exchanged, inaccuracy, independent, volume
+from fixture_design.design.problem import Problem
+from fixture_design.design.regions import Region, regions_of
+from fixture_design.design.ways import Progress
+from fixture_design.tolerances import GOOD_MARGIN
+
+#: Restarts in one region, and regions that are searched for better layouts of the same size.
+RESTARTS, MOST_REGIONS = 6, 8
+#: What an element of the start costs next to a new one [-]: it is kept where that makes no difference to the number.
+_KEPT_COST = 0.99
+
+
+def search(problem: Problem, seed: int, progress: Progress = lambda words, part: None) -> Outcome:
+    """The best layout that the search meets, with bounds of the number of clamps and of the accuracy."""
+    if not (problem.locates or problem.leaves or problem.closes is None):
+        return _whatever_closes(problem, seed)
+    regions, complete = regions_of(problem, seed)
+    best: Found | None = None
+    for number, region in enumerate(regions):
+        if problem.cancelled() or (best is not None and (region.bound > len(best.clamps) or number >= MOST_REGIONS)):
+            break
+        progress(f"way out {number + 1} of {len(regions)}", number / len(regions))
+        best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
+    least = min((region.bound for region in regions), default=None)
+    return Outcome(best, least, complete, None if best is None else _best_accuracy(problem, regions, len(best.clamps)))
+
+
+def _whatever_closes(problem: Problem, seed: int) -> Outcome:
+    """As few elements as close; the last one is the clamp."""
+    chosen, least = closing_elements(problem, seed)
+    least += len(problem.kept)
+    if chosen is None:
+        return Outcome(None, 0, True, None, least)
+    was = np.isin(chosen, problem.spare)
+    new = chosen[~was]
+    clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[-1:]])
+    locators = np.concatenate([problem.kept[: len(problem.locators)], new[:-1]])
+    margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
+    return Outcome(Found(locators, clamps, None, accuracy(problem, locators), margin), 0, True, None, least)
+
+
+def _better_within(problem: Problem, region: Region, rng: np.random.Generator, best: Found | None) -> Found | None:
+    """The best of one region, or ``best`` if that is better."""
+    for _ in range(RESTARTS):
+        if problem.cancelled():
+            break
+        for locators, clamps in _sets(problem, region, rng, best):
+            found = _finished(problem, region, locators, clamps)
+            if best is None or found.score(problem.objective) < best.score(problem.objective):
+                best = found
+    return best
+
+
+def _sets(
+    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None
+) -> Iterator[tuple[Indices, Indices]]:
+    """Locators after exchanges with clamps for them, if these could be better than what is there; then, as long as
+    there are more clamps than the bound says, clamps first and locators for them.
+    """
+    short = best is None or len(best.clamps) > region.bound
+    locators = _located(problem, region, rng)
+    if locators is None:
+        return
+    hoped = Found(locators, problem.new[: region.bound], region.out, accuracy(problem, locators), np.inf)
+    if best is None or hoped.score(problem.objective) < best.score(problem.objective):
+        clamps = clamps_for(problem, locators)
+        if clamps is not None:
+            yield locators, clamps
+            short = short and len(clamps) > region.bound
+    if short and problem.closes == "without friction":
+        yield from _turned_round(problem, region, rng)
+
+
+def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
+    """Locators of a region after exchanges, the kept ones among them; None where there are not enough."""
+    kept = problem.rows_of(problem.locators)
+    kept = independent(problem.rows, kept, (), rng, problem.candidates.freedoms) if len(kept) else kept
+    pool = region.pool * problem.each
+
+    def joins(chosen: object) -> np.ndarray:
+        owners = np.concatenate([problem.kept, np.asarray(chosen, dtype=np.int64) // problem.each])
+        return problem.joins(region.pool, owners)
+
+    def allowed(chosen: Indices) -> np.ndarray:
+        return np.array([joins(np.delete(chosen, place)) for place in range(len(chosen))])
+
+    spaced = problem.limits.spacing > 0
+    rows = independent(problem.rows, pool, kept, rng, problem.candidates.freedoms, joins if spaced else None)
+    if len(rows) < problem.candidates.freedoms:
+        return None
+    rows = exchanged(problem.rows, pool, rows, kept, problem.features, allowed if spaced else None)
+    return np.union1d(problem.owners(rows), np.array(problem.locators, dtype=np.int64))
+
+
+def clamps_for(problem: Problem, locators: Indices) -> Indices | None:
+    """The fewest clamps that close with these locators, the kept ones first; None where there are none."""
+    if problem.closes is None:
+        return np.array(problem.clamps, dtype=np.int64)
+    base = np.concatenate([locators, np.array(problem.clamps, dtype=np.int64)])
+    pool = np.setdiff1d(problem.clampable, base)
+    pool = pool[problem.joins(pool, base)]
+    costs = np.where(np.isin(pool, problem.spare), _KEPT_COST, 1.0)
+    found = fewest_stopping(
+        problem.closing_rows, base, pool, costs=costs, places=problem.candidates.places,
+        spacing=problem.limits.spacing, tolerances=problem.candidates.tolerances, cancelled=problem.cancelled,
+    )  # fmt: skip
+    if found.chosen is None:
+        return None
+    return np.concatenate([np.array(problem.clamps, dtype=np.int64), found.chosen])
+
+
+def _turned_round(problem: Problem, region: Region, rng: np.random.Generator) -> Iterator[tuple[Indices, Indices]]:
+    """Fewer clamps first, then locators for them: those of the bound, or of a smallest set that closes."""
+    if problem.locators or problem.clamps or problem.limits.spacing > 0 or problem.each > 1:
+        return
+    if region.out is None:
+        chosen = fewest_closing(problem.rows, rng, tries=3, cancelled=problem.cancelled)
+        if chosen is not None and len(chosen) == problem.candidates.freedoms + 1:
+            chosen, _ = held_best(problem.closing_rows, (), chosen, problem.new)
+            clamp = int(rng.integers(len(chosen)))
+            yield _moved(problem, region, np.delete(chosen, clamp), chosen[[clamp]]), chosen[[clamp]]
+        return
+    clamps = region.clamps.chosen if region.clamps is not None else None
+    locators = None if clamps is None else locators_for(problem.rows, region.pool, clamps, rng)
+    if locators is not None and clamps is not None:
+        yield _moved(problem, region, locators, clamps), clamps
+
+
+def _moved(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Indices:
+    """Locators after those exchanges that leave the set closed, and not by less than is good enough."""
+    start = np.concatenate([locators, clamps])
+    least = min(
+        float(margins(problem.closing_rows, start[None])[0]), max(GOOD_MARGIN, 2 * problem.candidates.tolerances.near)
+    )
+
+    def allowed(chosen: Indices) -> np.ndarray:
+        fit = []
+        for place in range(len(chosen)):
+            rest = np.concatenate([np.delete(chosen, place), clamps])
+            sets = np.column_stack([np.broadcast_to(rest, (len(region.pool), len(rest))), region.pool])
+            fit.append(margins(problem.closing_rows, sets) > least)
+        return np.array(fit)
+
+    return exchanged(problem.rows, region.pool, locators, (), problem.features, allowed)
+
+
+def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Found:
+    """The set with its clamps where they hold best, and what it is worth."""
+    margin, spacing, places = 0.0, problem.limits.spacing, problem.candidates.places
+    new = clamps[~np.isin(clamps, [*problem.clamps, *problem.spare])]
+    if problem.closes is not None and closes(problem.closing_rows, np.concatenate([locators, clamps])):
+        staying = np.concatenate([locators, clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]])
+        moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing)
+        clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
+    return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin)
+
+
+def _by_face(problem: Problem, locators: Indices) -> Indices:
+    """Locators in the order of their numbering: the face with most of them first (3, 2, 1), then as they came."""
+    features = [problem.candidates.features[index] for index in locators.tolist()]
+    order = sorted(range(len(locators)), key=lambda k: (-features.count(features[k]), features[k], locators[k]))
+    return locators[order]
+
+
+def _best_accuracy(problem: Problem, regions: Sequence[Region], clamps: int) -> float:
+    """A bound over all regions that might do with so few clamps."""
+    least = np.inf
+    for region in regions:
+        if region.bound <= clamps:
+            pool = np.concatenate([problem.rows_of(region.pool), problem.rows_of(problem.locators)])
+            if problem.features is not None and problem.candidates.freedoms == problem.candidates.dimension:
+                least = min(least, least_error(problem.rows, problem.features, pool))
+            else:
+                least = min(least, 1.0 / largest_volume(problem.rows[pool]))
+    return float(least)
+
+
+def accuracy(problem: Problem, locators: Indices) -> float:
+    """Of locators; small is good."""
+    numbers = problem.rows_of(locators)
+    if problem.features is not None and len(numbers) == problem.candidates.dimension:
+        return inaccuracy(problem.rows, problem.features, numbers)
+    return 1.0 / max(volume(problem.rows, numbers[: problem.candidates.dimension]), np.finfo(float).tiny)

@@ -1,0 +1,46 @@
+"""What is proven about the number of elements, and why there is no layout."""
+
+from __future__ import annotations
+
+from fixture_design.design.found import Found, Outcome
+from fixture_design.design.problem import Problem
+from fixture_design.design.result import Bound, DesignResult
+from fixture_design.design.start import Start
+from fixture_design.design.task import Task
+from fixture_design.layout import Answer
+
+
+def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
+    """What is proven about the number of elements."""
+    if outcome.least_clamps is None:
+        return None
+    found = None if outcome.found is None else outcome.found.count
+    if outcome.least_elements is not None:
+        return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
+    locators, clamps = problem.candidates.freedoms, outcome.least_clamps
+    single = problem.each == 1 and problem.closes == "without friction"
+    elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
+    return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates))
+
+
+def refused(task: Task, found: Found) -> bool:
+    """Whether there are more elements than there may be."""
+    limits = task.limits
+    many_locators = limits.locators is not None and len(found.locators) > limits.locators
+    return many_locators or (limits.clamps is not None and len(found.clamps) > limits.clamps)
+
+
+def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
+    """Why there is none, and whether that is proven."""
+    limits, steps = problem.limits, start.steps
+    if bound is None:
+        reason = "no straight way out leaves enough places for locators that determine the part"
+        answer = Answer.NO if outcome.complete else Answer.UNDECIDED
+        return DesignResult(answer, None, steps=steps, reason=reason)
+    for what, least, most in (("locators", bound.locators, limits.locators), ("clamps", bound.clamps, limits.clamps)):
+        if most is not None and least > most:
+            answer = Answer.NO if bound.complete else Answer.UNDECIDED
+            reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
+            return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
+    reason = f"no layout was found; at least {bound.locators} locators and {bound.clamps} clamps are needed"
+    return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)

@@ -1,0 +1,40 @@
+"""What design asks of geometry and of verification, handed in by the caller; a fake of ten lines serves the tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol, runtime_checkable
+
+from fixture_design.contacts import Contact, Scale
+from fixture_design.design.candidates import Spots
+from fixture_design.design.task import CandidateRules
+from fixture_design.layout import Layout, Verdict
+
+#: Told what is being done, in words, and what part of it is behind, from 0 to 1.
+Progress = Callable[[str, float], None]
+
+
+@runtime_checkable
+class Ways(Protocol):
+    """How a part is touched, and how a layout is judged."""
+
+    def scale(self) -> Scale:
+        """Centre of the part in W and half the diagonal of its box."""
+        ...
+
+    @property
+    def answers(self) -> frozenset[str]:
+        """The requirements that verdicts answer."""
+        ...
+
+    def spots(self, rules: CandidateRules, seed: int) -> Spots:
+        """Candidate points on the part in W, with their normals."""
+        ...
+
+    def contacts(self, layout: Layout) -> Sequence[Contact]:
+        """The contacts that a layout's elements have."""
+        ...
+
+    def verify(self, layout: Layout) -> Verdict:
+        """The verdict on a layout."""
+        ...
