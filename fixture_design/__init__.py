@@ -11,7 +11,7 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > io > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
+    cli > batch > io > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
@@ -27,7 +27,7 @@ The folders state the theory, and each imports only from those to its right::
   bodies all there are (`geometry.bodies`), each from the tangent cones of both sides (`contacts.polyhedral`); the part
   posed among bodies, candidate points on its surface, sliding over it.
 * `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.
-* `io`: files. `cli`: the command line.
+* `io`: files. `batch`: thousands of layouts in worker processes. `cli`: the command line.
 
 How an answer is decided
 ========================
@@ -54,6 +54,7 @@ from typing import TYPE_CHECKING
 from fixture_design.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from fixture_design.batch import verify_batch
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
     from fixture_design.io import read_layout, write_layout
@@ -70,6 +71,7 @@ _HOME = {
     "contacts_of": "verification",
     "read_layout": "io",
     "verify": "verification",
+    "verify_batch": "batch",
     "write_layout": "io",
 }
 
@@ -83,6 +85,7 @@ __all__ = [
     "contacts_of",
     "read_layout",
     "verify",
+    "verify_batch",
     "write_layout",
 ]
 

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 from typer.exceptions import TyperException
 
+from fixture_design.cli.batch import batch
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
 from fixture_design.cli.schema import schema
@@ -26,6 +27,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(verify)
+app.command()(batch)
 app.command()(schema)
 
 

@@ -1,6 +1,6 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
-from fixture_design.io.documents import Document, read_document
+from fixture_design.io.documents import Document, document_of, line_document, read_bytes, read_document
 from fixture_design.io.json_writer import dumps
 from fixture_design.io.layout_file import layout_from_data, read_layout, write_layout
 from fixture_design.io.places import Place
@@ -12,10 +12,13 @@ __all__ = [
     "ContentError",
     "Document",
     "Place",
+    "document_of",
     "dumps",
     "error_record",
     "json_schema",
     "layout_from_data",
+    "line_document",
+    "read_bytes",
     "read_document",
     "read_layout",
     "schema_names",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -44,6 +45,9 @@ from fixture_design.verification.linked import bracketed
 from fixture_design.verification.use import USE_QUESTIONS, with_use
 from fixture_design.version import VERSION
 
+if TYPE_CHECKING:
+    from fixture_design.geometry import PartGeometry, Polygon
+
 #: The questions this version answers about every group, in the order they are reported.
 QUESTIONS = {
     "deterministic": deterministic,
@@ -57,13 +61,16 @@ QUESTIONS = {
 _NAMES_SHOWN = 5
 
 
-def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
+def verify(layout: Layout, tolerances: Tolerances = DEFAULT, geometry: PartGeometry | Polygon | None = None) -> Verdict:
     """Contacts, findings and requirements of a layout.
+
+    Args:
+        geometry: of the layout's part (`geometry.load_geometry`), where it is loaded already.
 
     Raises:
         InputError: the layout has no contacts at all, its geometry cannot be used, or an element is off the surface.
     """
-    found = contacts_of(layout)
+    found = contacts_of(layout, geometry)
     notes = list(found.notes) + coincident_notes(found.contacts, found.report)
     groups = groups_of(layout, found.contacts)
     verdicts = group_verdicts(groups, found.report, notes, tolerances)
@@ -84,8 +91,11 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
     )
 
 
-def contacts_of(layout: Layout) -> FoundContacts:
+def contacts_of(layout: Layout, geometry: PartGeometry | Polygon | None = None) -> FoundContacts:
     """Every contact of a layout: those of its elements in file order, of its bodies, then those given outright.
+
+    Args:
+        geometry: of the layout's part, where it is loaded already.
 
     Raises:
         ContactError: there are none.  FileFormatError: the part's file is not there.  GeometryError and
@@ -99,7 +109,7 @@ def contacts_of(layout: Layout) -> FoundContacts:
         return FoundContacts(layout.contacts, scale_of(layout.contacts), ())
     from fixture_design.geometry import contacts_of_elements  # noqa: PLC0415 - Drake only where there is geometry
 
-    found = contacts_of_elements(layout)
+    found = contacts_of_elements(layout, geometry)
     contacts = (*found.contacts, *layout.contacts)
     return FoundContacts(contacts, Scale(found.box_center, found.half_diagonal), found.notes, found.geometry)
 

@@ -1,0 +1,68 @@
+"""From items to the lines of the output: verdicts, or what went wrong."""
+
+from __future__ import annotations
+
+import json
+from time import perf_counter
+from typing import Any
+
+from fixture_design.batch.digest import input_hash
+from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.outcome import outcome_of, smallest_margin
+from fixture_design.batch.part_cache import PartCache
+from fixture_design.batch.reading import layout_of, values_of
+from fixture_design.errors import FixtureDesignError, InputError
+from fixture_design.io import dumps, error_record, verdict_to_dict
+from fixture_design.verification import verify
+
+Record = dict[str, Any]
+
+#: Digits of seconds in `run.time`: microseconds.
+_TIME_DIGITS = 6
+
+
+class WorkerError(FixtureDesignError):
+    """The process that looked at a layout died."""
+
+
+class TimeLimitError(FixtureDesignError):
+    """A layout took longer than it was given."""
+
+
+def entry_of(item: Item, parts: PartCache, brief: bool) -> Entry:
+    """The record of one layout; an error is a record too."""
+    start = perf_counter()
+    try:
+        layout = layout_of(item)
+        record: Record = verdict_to_dict(verify(layout, geometry=parts.geometry_of(layout)), brief)
+        record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, _TIME_DIGITS)}
+        return entry_of_record(record)
+    except InputError as error:
+        return failure(item, error.within(item.source))
+    except Exception as error:  # noqa: BLE001 - a fault of ours in one layout must not cost the others' verdicts
+        return failure(item, error)
+
+
+def failure(item: Item, error: Exception) -> Entry:
+    """The record of a layout that has no verdict."""
+    name = values_of(item).get("name")
+    known = name if isinstance(name, str) and name else item.default_name
+    return entry_of_record(error_record(item.source, error, item.named(known)))
+
+
+def entry_of_record(record: Record) -> Entry:
+    """A record as it stands in the output, with what the summary wants to know of it."""
+    line = dumps(record).encode("utf-8", errors="backslashreplace") + b"\n"
+    return Entry(line, outcome_of(record), smallest_margin(record))
+
+
+def record_of(line: bytes) -> Record:
+    """What a line of the output says.
+
+    Raises:
+        ValueError: it is no JSON object.
+    """
+    record = json.loads(line)
+    if not isinstance(record, dict):
+        raise ValueError("the line is no JSON object")
+    return record
