@@ -13,9 +13,10 @@ from fixture_design.batch.inputs import input_files
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.items import items_of
 from fixture_design.batch.output import Output
-from fixture_design.batch.records import record_of
+from fixture_design.batch.records import Detail, record_of
 from fixture_design.batch.summary import Summary
 from fixture_design.batch.worker import LookAt, verifying
+from fixture_design.errors import InputError
 
 #: Told of items whose records are new or were there already.
 Watcher = Callable[[Sequence[tuple[Item, Entry]]], None]
@@ -39,15 +40,27 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def local_workers(brief: bool = False, jobs: int | None = None, limit: float | None = None) -> Workers:
+def local_workers(detail: Detail = "full", jobs: int | None = None, limit: float | None = None) -> Workers:
     """Worker processes of this machine, by default one a processor; ``limit``: seconds for one layout."""
-    return Crew(LookAt(verifying, brief), jobs or processors(), limit)
+    return Crew(LookAt(verifying, detail), jobs or processors(), limit)
+
+
+def detail_wanted(brief: bool, sets: bool) -> Detail:
+    """How much records say.
+
+    Raises:
+        InputError: both together.
+    """
+    if brief and sets:
+        raise InputError("brief records have no sets", expected="one of brief and sets")
+    return "brief" if brief else "sets" if sets else "full"
 
 
 def verify_batch(
     paths: str | Path | Iterable[str | Path],
     *,
     brief: bool = False,
+    sets: bool = False,
     jobs: int | None = None,
     limit: float | None = None,
 ) -> Iterator[dict[str, Any]]:
@@ -58,6 +71,7 @@ def verify_batch(
     Args:
         paths: layout files, .jsonl of layouts, folders of both, globs.
         brief: without witnesses, margins and contacts.
+        sets: with the admissible sets, as `verify` lists them: some hundred layouts a second at best.
         jobs: processes, by default one a processor.
         limit: seconds that one layout may take, by default any.
 
@@ -68,7 +82,7 @@ def verify_batch(
         FileFormatError: a path that is not there, a glob without matches, a folder without layouts.
     """
     files = input_files([paths] if isinstance(paths, str | Path) else list(paths))
-    return _records(files, local_workers(brief, jobs, limit))
+    return _records(files, local_workers(detail_wanted(brief, sets), jobs, limit))
 
 
 def _records(files: Sequence[Path], workers: Workers) -> Iterator[dict[str, Any]]:
@@ -83,7 +97,7 @@ def run_batch(
     output: Path,
     workers: Workers,
     *,
-    brief: bool = False,
+    detail: Detail = "full",
     watch: Watcher = lambda some: None,
     ready: Callable[[], None] = lambda: None,
     stop: Callable[[], bool] = lambda: False,
@@ -108,7 +122,7 @@ def run_batch(
 
     with closing(workers), closing(Output(output, files)) as out:
         items = items_of(files)
-        for done in out.done(items, brief):
+        for done in out.done(items, detail):
             add([done])
         summary.resumed = summary.count
         ready()

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 from fixture_design.batch.digest import input_hash
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.outcome import outcome_of, smallest_margin
-from fixture_design.batch.records import record_of
+from fixture_design.batch.records import Detail, detail_of, record_of
 from fixture_design.errors import FileFormatError
 from fixture_design.io.verdict_record import VERDICT_SCHEMA
 from fixture_design.tolerances import DEFAULT
@@ -23,6 +23,8 @@ from fixture_design.version import VERSION
 
 #: What every line of ours begins with.
 _BEGINNING = b'{"schema": "' + VERDICT_SCHEMA.encode() + b'"'
+#: What records are called by how much they say.
+_WORDS: dict[Detail, str] = {"brief": "brief", "full": "full", "sets": "full with sets"}
 #: Said wherever a file cannot be gone on with.
 _ELSEWHERE = "another output, or that file moved away"
 
@@ -53,7 +55,7 @@ class Output:
             self._file.close()
             raise
 
-    def done(self, items: Iterator[Item], brief: bool) -> Iterator[tuple[Item, Entry]]:
+    def done(self, items: Iterator[Item], detail: Detail) -> Iterator[tuple[Item, Entry]]:
         """The items whose records are there, with these; ``items`` goes on behind them.
 
         Raises:
@@ -68,7 +70,7 @@ class Output:
                 raise FileFormatError("the output has a line that is no record", source=self.path, place=place,
                                       expected=_ELSEWHERE) from cause  # fmt: skip
             item = next(items, None)
-            problem = "there are more records than layouts" if item is None else _difference(record, item, brief)
+            problem = "there are more records than layouts" if item is None else _difference(record, item, detail)
             if item is None or problem is not None:
                 raise FileFormatError(f"the output holds results of something else: {problem}", source=self.path,
                                       place=place, expected=_ELSEWHERE)  # fmt: skip
@@ -129,7 +131,7 @@ def _end_of_last_line(file: BinaryIO, step: int = 1 << 20) -> int:
     return 0
 
 
-def _difference(record: dict[str, Any], item: Item, brief: bool) -> str | None:
+def _difference(record: dict[str, Any], item: Item, detail: Detail) -> str | None:
     """Why a record is not that of an item as it is now; None if it is."""
     if record.get("source") != item.source:
         return f"of {record.get('source')!r}, where {item.source!r} would be"
@@ -140,8 +142,8 @@ def _difference(record: dict[str, Any], item: Item, brief: bool) -> str | None:
         return f"of version {run.get('version')}; this is {VERSION}"
     if run.get("tolerances") != DEFAULT.as_dict():
         return "it was computed with other tolerances"
-    if ("contacts" not in record) != brief:
-        return "they are full, and brief ones are wanted" if brief else "they are brief, and full ones are wanted"
+    if detail_of(record) != detail:
+        return f"records are {_WORDS[detail_of(record)]}, and those wanted are {_WORDS[detail]}"
     if run.get("input") != input_hash(item):
         return f"{item.source!r}, or a file it names, has changed since"
     return None

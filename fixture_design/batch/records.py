@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from time import perf_counter
-from typing import Any
+from typing import Any, Literal
 
 from fixture_design.batch.digest import input_hash
 from fixture_design.batch.item import Entry, Item
@@ -13,12 +13,15 @@ from fixture_design.batch.part_cache import PartCache
 from fixture_design.batch.reading import layout_of, values_of
 from fixture_design.errors import FixtureDesignError, InputError
 from fixture_design.io import dumps, error_record, verdict_to_dict
+from fixture_design.layout import Verdict
 from fixture_design.verification import verify
 
 Record = dict[str, Any]
+#: How much a record says: answers alone; with witnesses, margins and contacts; with the admissible sets as well.
+Detail = Literal["brief", "full", "sets"]
 
 #: Digits of seconds in `run.time`: microseconds.
-_TIME_DIGITS = 6
+TIME_DIGITS = 6
 
 
 class WorkerError(FixtureDesignError):
@@ -29,18 +32,35 @@ class TimeLimitError(FixtureDesignError):
     """A layout took longer than it was given."""
 
 
-def entry_of(item: Item, parts: PartCache, brief: bool) -> Entry:
+def entry_of(item: Item, parts: PartCache, detail: Detail) -> Entry:
     """The record of one layout; an error is a record too."""
     start = perf_counter()
     try:
         layout = layout_of(item)
-        record: Record = verdict_to_dict(verify(layout, geometry=parts.geometry_of(layout)), brief)
-        record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, _TIME_DIGITS)}
+        verdict = verify(layout, geometry=parts.geometry_of(layout), sets=detail == "sets")
+        record = verdict_record(verdict, detail)
+        record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, TIME_DIGITS)}
         return entry_of_record(record)
     except InputError as error:
         return failure(item, error.within(item.source))
     except Exception as error:  # noqa: BLE001 - a fault of ours in one layout must not cost the others' verdicts
         return failure(item, error)
+
+
+def verdict_record(verdict: Verdict, detail: Detail) -> Record:
+    """A verdict as `io` writes it; what was not looked for is null or not there."""
+    record: Record = verdict_to_dict(verdict, detail == "brief")
+    if detail == "full":
+        for group in record["groups"].values():
+            del group["bidirectional"]
+    return record
+
+
+def detail_of(record: Record) -> Detail:
+    """How much a record says."""
+    if "contacts" not in record:
+        return "brief"
+    return "sets" if any("bidirectional" in group for group in record["groups"].values()) else "full"
 
 
 def failure(item: Item, error: Exception) -> Entry:

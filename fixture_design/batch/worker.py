@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 
 from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.records import Detail
 
 #: Entries of some items of a chunk, by their places in it.
 Known = list[tuple[int, Entry]]
@@ -23,26 +24,32 @@ class LookAt:
 
     Attributes:
         make: makes the `Look`, in the worker: what it holds need not travel.
-        brief: its argument.
+        detail: its argument.
     """
 
-    make: Callable[[bool], Look]
-    brief: bool
+    make: Callable[[Detail], Look]
+    detail: Detail
 
     def __call__(self) -> Look:
-        return self.make(self.brief)
+        return self.make(self.detail)
 
 
-def verifying(brief: bool) -> Look:
+def verifying(detail: Detail) -> Look:
     """Looks at items with `verify`: those that can be looked at together first, then one after the other."""
-    from fixture_design.batch.part_cache import PartCache  # noqa: PLC0415 - slow imports belong to the worker
+    from fixture_design.batch.alike import Alike  # noqa: PLC0415 - slow imports belong to the worker
+    from fixture_design.batch.part_cache import PartCache  # noqa: PLC0415
     from fixture_design.batch.records import entry_of  # noqa: PLC0415
 
-    parts = PartCache()
+    parts, alike = PartCache(), Alike(detail)
 
     def look(items: Sequence[Item]) -> Iterator[Known]:
+        together = alike.entries(items)
+        if together:
+            yield together
+        done = {place for place, _ in together}
         for place, item in enumerate(items):
-            yield [(place, entry_of(item, parts, brief))]
+            if place not in done:
+                yield [(place, entry_of(item, parts, detail))]
 
     return look
 

@@ -34,6 +34,7 @@ def batch(
         Path, typer.Option("--output", "-o", help="Records, one a line; gone on with if there.", metavar="OUT.jsonl")
     ],
     brief: Annotated[bool, typer.Option("--brief", help="Without witnesses, margins and contacts.")] = False,
+    sets: Annotated[bool, typer.Option("--sets", help="With the admissible sets, as verify has them; slow.")] = False,
     jobs: Annotated[
         int | None, typer.Option("--jobs", min=1, help="Worker processes.", show_default="all cores")
     ] = None,
@@ -47,15 +48,16 @@ def batch(
     Exit code, the first that is true of some layout: 4 internal error, 2 bad input, 1 a requirement fails, 3
     undecided; else 0; 130 if it was interrupted.
     """
-    from fixture_design.batch import input_files, local_workers, run_batch, total_share  # noqa: PLC0415 - as `verify`
+    from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415 - as `verify`
     from fixture_design.batch.progress import Progress  # noqa: PLC0415
 
+    detail = detail_wanted(brief, sets)
     files = input_files(paths, besides=output)
     progress = Progress(total_share(files))
     with _interrupts() as interrupted:
         summary = run_batch(
-            files, output, local_workers(brief, jobs, limit),
-            brief=brief, watch=progress.add, ready=progress.resumed, stop=interrupted,
+            files, output, local_workers(detail, jobs, limit),
+            detail=detail, watch=progress.add, ready=progress.resumed, stop=interrupted,
         )  # fmt: skip
     progress.close()
     if as_json:

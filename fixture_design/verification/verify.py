@@ -61,11 +61,17 @@ QUESTIONS = {
 _NAMES_SHOWN = 5
 
 
-def verify(layout: Layout, tolerances: Tolerances = DEFAULT, geometry: PartGeometry | Polygon | None = None) -> Verdict:
+def verify(
+    layout: Layout,
+    tolerances: Tolerances = DEFAULT,
+    geometry: PartGeometry | Polygon | None = None,
+    sets: bool = True,
+) -> Verdict:
     """Contacts, findings and requirements of a layout.
 
     Args:
         geometry: of the layout's part (`geometry.load_geometry`), where it is loaded already.
+        sets: whether the admissible sets are wanted, which no answer needs.
 
     Raises:
         InputError: the layout has no contacts at all, its geometry cannot be used, or an element is off the surface.
@@ -73,7 +79,7 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT, geometry: PartGeome
     found = contacts_of(layout, geometry)
     notes = list(found.notes) + coincident_notes(found.contacts, found.report)
     groups = groups_of(layout, found.contacts)
-    verdicts = group_verdicts(groups, found.report, notes, tolerances)
+    verdicts = group_verdicts(groups, found.report, notes, tolerances, sets)
     verdicts = {group.name: with_use(verdicts[group.name], layout, group, found, tolerances) for group in groups}
     requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
     return Verdict(
@@ -128,7 +134,7 @@ def _check_part_file(layout: Layout) -> None:
 
 
 def group_verdicts(
-    groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances
+    groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances, sets: bool = True
 ) -> dict[str, GroupVerdict]:
     """The verdict of every group; groups with the same contacts are looked at once."""
     sharing: dict[tuple[str, ...], list[Group]] = {}
@@ -137,12 +143,14 @@ def group_verdicts(
     verdicts: dict[str, GroupVerdict] = {}
     for alike in sharing.values():
         names = [group.name for group in alike]
-        found = group_verdict(replace(alike[0], name=" and ".join(names)), report, notes, tolerances)
+        found = group_verdict(replace(alike[0], name=" and ".join(names)), report, notes, tolerances, sets)
         verdicts |= {name: replace(found, name=name) for name in names}
     return {group.name: verdicts[group.name] for group in groups}
 
 
-def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tolerances) -> GroupVerdict:
+def group_verdict(
+    group: Group, report: Scale, notes: list[str], tolerances: Tolerances, sets: bool = True
+) -> GroupVerdict:
     """Every question asked of one group; all answers are None for an empty one."""
     names = tuple(contact.name for contact in group.contacts)
     if not group.contacts:
@@ -157,6 +165,8 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:
         notes.append(f"{group.name}: too many contacts or alternatives for the margin of {', '.join(unmeasured)}")
+    if not sets:
+        return GroupVerdict(group.name, names, findings)
     try:
         displacements = admissible_displacements(restraint)
         forces = admissible_forces(displacements, tolerances)

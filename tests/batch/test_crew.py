@@ -11,18 +11,18 @@ import pytest
 from fixture_design.batch import crew as crew_module
 from fixture_design.batch.crew import Crew
 from fixture_design.batch.item import Item
-from fixture_design.batch.records import WorkerError, record_of
+from fixture_design.batch.records import Detail, WorkerError, record_of
 from fixture_design.batch.worker import Look, LookAt
 from tests.batch.layouts import deadly
 
 
 def looked_at(folder: Path, texts: Sequence[str], limit: float | None = None) -> list[bytes]:
     items = [Item(f"{n}.yaml", text.encode()) for n, text in enumerate(texts)]
-    with closing(Crew(LookAt(partial(_deadly, str(folder)), False), 2, limit)) as crew:
+    with closing(Crew(LookAt(partial(_deadly, str(folder)), "full"), 2, limit)) as crew:
         return [entry.line for some in crew.entries(iter(items)) for _, entry in some]
 
 
-def _deadly(folder: str, brief: bool) -> Look:
+def _deadly(folder: str, detail: Detail) -> Look:
     return deadly(folder)
 
 
@@ -55,13 +55,13 @@ def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
     assert [found[n] for n in (0, 2, 3)] == [b"0.yaml a\n", b"2.yaml b\n", b"3.yaml c\n"]
 
 
-def _stillborn(brief: bool) -> Look:
+def _stillborn(detail: Detail) -> Look:
     raise SystemExit(3)
 
 
 def test_workers_that_never_begin_are_an_error() -> None:
     with (
-        closing(Crew(LookAt(_stillborn, False), 1)) as crew,
+        closing(Crew(LookAt(_stillborn, "full"), 1)) as crew,
         pytest.raises(WorkerError, match="before they begin to work"),
     ):
         list(crew.entries(iter([Item("x", b"")])))
@@ -77,7 +77,7 @@ def test_memory_does_not_grow_with_the_items(tmp_path: Path, monkeypatch: pytest
             drawn += 1
             yield Item(f"{n}", b"t")
 
-    with closing(Crew(LookAt(partial(_deadly, str(tmp_path)), False), 1)) as crew:
+    with closing(Crew(LookAt(partial(_deadly, str(tmp_path)), "full"), 1)) as crew:
         for some in crew.entries(items()):
             given += len(some)
             ahead = max(ahead, drawn - given)

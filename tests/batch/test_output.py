@@ -12,7 +12,7 @@ from fixture_design.batch import run_batch
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.output import Output
 from fixture_design.batch.part_cache import PartCache
-from fixture_design.batch.records import entry_of
+from fixture_design.batch.records import Detail, entry_of
 from fixture_design.errors import FileFormatError
 from tests.batch.layouts import FAILS, HOLDS, lines, planar
 
@@ -20,15 +20,15 @@ from tests.batch.layouts import FAILS, HOLDS, lines, planar
 class InThisProcess:
     """Workers without processes; ``most`` items only, as if killed then."""
 
-    def __init__(self, brief: bool = True, most: int | None = None) -> None:
-        self.brief, self.most, self.seen = brief, most, 0
+    def __init__(self, detail: Detail = "brief", most: int | None = None) -> None:
+        self.detail, self.most, self.seen = detail, most, 0
 
     def entries(self, items: Iterator[Item], stop: object = None) -> Iterator[list[tuple[Item, Entry]]]:
         for item in items:
             if self.seen == self.most:
                 return
             self.seen += 1
-            yield [(item, entry_of(item, PartCache(), self.brief))]
+            yield [(item, entry_of(item, PartCache(), self.detail))]
 
     def close(self) -> None:
         pass
@@ -40,10 +40,10 @@ def library(tmp_path: Path) -> Path:
     return lines(tmp_path / "lib.jsonl", layouts)
 
 
-def run(library: Path, output: Path, most: int | None = None, brief: bool = True) -> tuple[int, list[dict]]:
+def run(library: Path, output: Path, most: int | None = None, detail: Detail = "brief") -> tuple[int, list[dict]]:
     """How many layouts were looked at, and all records without their times."""
-    workers = InThisProcess(brief, most)
-    run_batch([library], output, workers, brief=brief)
+    workers = InThisProcess(detail, most)
+    run_batch([library], output, workers, detail=detail)
     records = [json.loads(line) for line in output.read_text().splitlines()]
     for record in records:
         record.get("run", {}).pop("time", None)
@@ -121,8 +121,8 @@ def test_more_layouts_at_the_end_are_added(tmp_path: Path) -> None:
 
 def test_brief_and_full_are_not_mixed(library: Path, tmp_path: Path) -> None:
     run(library, tmp_path / "o.jsonl", 1)
-    with pytest.raises(FileFormatError, match="they are brief, and full ones are wanted"):
-        run(library, tmp_path / "o.jsonl", brief=False)
+    with pytest.raises(FileFormatError, match="records are brief, and those wanted are full"):
+        run(library, tmp_path / "o.jsonl", detail="full")
 
 
 def test_another_version_is_not_gone_on_with(library: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
