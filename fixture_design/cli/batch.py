@@ -13,6 +13,7 @@ import typer
 
 from fixture_design.cli.exit_codes import ExitCode, worst
 from fixture_design.cli.messages import say
+from fixture_design.errors import FileFormatError
 from fixture_design.io import dumps
 
 _CODES = {
@@ -41,6 +42,15 @@ def batch(
     limit: Annotated[
         float | None, typer.Option("--limit", min=0.001, help="Seconds that one layout may take.", metavar="SECONDS")
     ] = None,
+    report: Annotated[
+        Path | None, typer.Option("--report", help="Also write an HTML page about all records.", metavar="OUT.html")
+    ] = None,
+    table: Annotated[
+        Path | None, typer.Option("--table", help="Also write all records as a table.", metavar="OUT.csv|OUT.parquet")
+    ] = None,
+    against: Annotated[
+        Path | None, typer.Option("--against", help="Compare with an earlier output.", metavar="OLD.jsonl")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="The summary as one JSON document on stdout.")] = False,
 ) -> None:
     """Verify thousands of layouts, in worker processes; a run that was stopped goes on where it was.
@@ -48,11 +58,16 @@ def batch(
     Exit code, the first that is true of some layout: 4 internal error, 2 bad input, 1 a requirement fails, 3
     undecided; else 0; 130 if it was interrupted.
     """
-    from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415 - as `verify`
+    from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415
+    from fixture_design.batch.against import compare  # noqa: PLC0415 - after the arguments are known good
     from fixture_design.batch.progress import Progress  # noqa: PLC0415
+    from fixture_design.batch.report import write_batch_report  # noqa: PLC0415
+    from fixture_design.batch.table import write_table  # noqa: PLC0415
+    from fixture_design.cli.batch_summary import print_summary  # noqa: PLC0415
 
     detail = detail_wanted(brief, sets)
     files = input_files(paths, besides=output)
+    _check_others(output, files, report, table, against)
     progress = Progress(total_share(files))
     with _interrupts() as interrupted:
         summary = run_batch(
@@ -60,16 +75,44 @@ def batch(
             detail=detail, watch=progress.add, ready=progress.resumed, stop=interrupted,
         )  # fmt: skip
     progress.close()
+    comparison = compare(output, against) if against is not None and not summary.interrupted else None
     if as_json:
-        typer.echo(dumps(summary.as_dict()))
+        said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
+        typer.echo(dumps(said))
     else:
-        from fixture_design.cli.batch_summary import print_summary  # noqa: PLC0415 - rich is not needed for JSON
-
-        print_summary(summary)
+        print_summary(summary, comparison)
+    if report is not None:
+        write_batch_report(output, report, summary, comparison)
+    if table is not None:
+        write_table(output, table)
     if summary.interrupted:
         say(f"{summary.count} records are in {output}; the same command goes on from there")
         raise typer.Exit(ExitCode.INTERRUPTED)
     raise typer.Exit(worst(_CODES[outcome] for outcome in summary.outcomes))
+
+
+def _check_others(
+    output: Path, inputs: list[Path], report: Path | None, table: Path | None, against: Path | None
+) -> None:
+    """What would fail at the end fails before the beginning, and nothing that the user made is lost.
+
+    Raises:
+        InputError: a file is to be written that is something else too; the earlier output cannot be read.
+    """
+    from fixture_design.batch.results import records_in  # noqa: PLC0415
+    from fixture_design.batch.table import check_table  # noqa: PLC0415
+    from fixture_design.viewing import refuse_inputs  # noqa: PLC0415
+
+    read = [*inputs, *([against] if against else [])]
+    refuse_inputs(output, [against] if against else [])
+    for written in filter(None, (report, table)):
+        refuse_inputs(written, [*read, output])
+        if written.is_dir() or not written.absolute().parent.is_dir():
+            raise FileFormatError("the file cannot be written: no such folder, or a folder itself", source=written)
+    if table is not None:
+        check_table(table)
+    if against is not None:
+        next(records_in(against), None)
 
 
 @contextmanager

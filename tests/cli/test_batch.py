@@ -75,6 +75,12 @@ def test_json_is_the_summary(command: Callable, tmp_path: Path) -> None:
         (["lib.jsonl", "-o", "lib.jsonl"], "lib.jsonl: the output is one of the inputs"),
         (["lib.jsonl", "-o", "no/o.jsonl"], "the output cannot be written"),
         (["lib.jsonl", "-o", "notes.txt"], "the output exists and holds something else"),
+        (["lib.jsonl", "-o", "o.jsonl", "--report", "lib.jsonl"], "this file is an input and would be lost"),
+        (["lib.jsonl", "-o", "o.jsonl", "--table", "no/t.csv"], "no/t.csv: the file cannot be written"),
+        (["lib.jsonl", "-o", "o.jsonl", "--table", "t.xlsx"], "ends in .csv or .parquet"),
+        (["lib.jsonl", "-o", "o.jsonl", "--against", "old.jsonl"], "old.jsonl: the file cannot be read"),
+        (["lib.jsonl", "-o", "o.jsonl", "--against", "notes.txt"], "notes.txt: line 1: the line is no record"),
+        (["lib.jsonl", "-o", "o.jsonl", "--brief", "--sets"], "one of brief and sets"),
         (["lib.jsonl", "-o", "o.jsonl", "--jobs", "0"], "--jobs"),
         (["lib.jsonl", "-o", "o.jsonl", "--limit", "0"], "--limit"),
     ],
@@ -92,6 +98,21 @@ def test_bad_input(
     assert len(ran.err.splitlines()) == 1
     assert library.read_bytes() == before
     assert (tmp_path / "notes.txt").read_text() == "notes\n"
+
+
+def test_against_an_earlier_run_with_page_and_table(command: Callable, tmp_path: Path) -> None:
+    library, old, new = tmp_path / "lib.jsonl", tmp_path / "old.jsonl", tmp_path / "new.jsonl"
+    command("batch", lines(library, [planar("a", require=HOLDS), planar("b", require=HOLDS)]), "-o", old, "--jobs", 1)
+    lines(library, [planar("a", require=FAILS), planar("b", require=HOLDS)])
+    others = ("--report", tmp_path / "r.html", "--table", tmp_path / "t.csv")
+    ran = command("batch", library, "-o", new, "--against", old, *others, "--jobs", 1)
+    assert ran.code == 1
+    assert "1 of 2 changed verdict" in ran.out
+    assert "  a: verdict yes -> no\n" in ran.out
+    assert "1 changed verdict" in (tmp_path / "r.html").read_text()
+    assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
+    told = json.loads(command("batch", library, "-o", new, "--against", old, "--json", "--jobs", 1).out)
+    assert [change["name"] for change in told["against"]["changed"]] == ["a"]
 
 
 def test_malformed_files_cost_nobody_else(tmp_path: Path) -> None:
