@@ -13,7 +13,7 @@ import typer
 
 from fixture_design.cli.exit_codes import ExitCode, worst
 from fixture_design.cli.messages import say
-from fixture_design.errors import FileFormatError
+from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import dumps
 
 _CODES = {
@@ -42,6 +42,10 @@ def batch(
     limit: Annotated[
         float | None, typer.Option("--limit", min=0.001, help="Seconds that one layout may take.", metavar="SECONDS")
     ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option("--cluster", help="Dask scheduler that runs it instead of this machine.", metavar="ADDRESS"),
+    ] = None,
     report: Annotated[
         Path | None, typer.Option("--report", help="Also write an HTML page about all records.", metavar="OUT.html")
     ] = None,
@@ -60,18 +64,23 @@ def batch(
     """
     from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415
     from fixture_design.batch.against import compare  # noqa: PLC0415 - after the arguments are known good
+    from fixture_design.batch.cluster import Cluster  # noqa: PLC0415
     from fixture_design.batch.progress import Progress  # noqa: PLC0415
     from fixture_design.batch.report import write_batch_report  # noqa: PLC0415
     from fixture_design.batch.table import write_table  # noqa: PLC0415
     from fixture_design.cli.batch_summary import print_summary  # noqa: PLC0415
 
     detail = detail_wanted(brief, sets)
-    files = input_files(paths, besides=output)
+    if cluster is not None and (jobs is not None or limit is not None):
+        raise InputError("--jobs and --limit are for this machine", expected="neither of them with --cluster")
+    # on a cluster all see the same files, but none has this folder
+    files = input_files([path.absolute() for path in paths] if cluster else paths, besides=output)
     _check_others(output, files, report, table, against)
     progress = Progress(total_share(files))
     with _interrupts() as interrupted:
+        workers = local_workers(detail, jobs, limit) if cluster is None else Cluster(cluster, detail)
         summary = run_batch(
-            files, output, local_workers(detail, jobs, limit),
+            files, output, workers,
             detail=detail, watch=progress.add, ready=progress.resumed, stop=interrupted,
         )  # fmt: skip
     progress.close()
