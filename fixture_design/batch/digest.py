@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from fixture_design.batch.item import Item
 from fixture_design.batch.reading import values_of
@@ -29,7 +30,7 @@ def input_hash(item: Item) -> str:
     return digest.hexdigest()
 
 
-def files_named(values: Mapping[str, object], folder: Path) -> Iterator[Path]:
+def files_named(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
     """The files that a layout's plain values name, whatever else is wrong with them."""
     part = values.get("part")
     named = [(part, key) for key in ("urdf", "mesh", "step")]

@@ -34,17 +34,24 @@ class TimeLimitError(FixtureDesignError):
 
 def entry_of(item: Item, parts: PartCache, detail: Detail) -> Entry:
     """The record of one layout; an error is a record too."""
-    start = perf_counter()
     try:
-        layout = layout_of(item)
-        verdict = verify(layout, geometry=parts.geometry_of(layout), sets=detail == "sets")
-        record = verdict_record(verdict, detail)
-        record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, TIME_DIGITS)}
-        return entry_of_record(record)
+        try:
+            return entry_of_record(_record(item, parts, detail, placed=False))
+        except InputError:  # once more, for a message that says where
+            return entry_of_record(_record(item, parts, detail, placed=True))
     except InputError as error:
         return failure(item, error.within(item.source))
     except Exception as error:  # noqa: BLE001 - a fault of ours in one layout must not cost the others' verdicts
         return failure(item, error)
+
+
+def _record(item: Item, parts: PartCache, detail: Detail, *, placed: bool) -> Record:
+    start = perf_counter()
+    layout = layout_of(item, placed=placed)
+    verdict = verify(layout, geometry=parts.geometry_of(layout), sets=detail == "sets")
+    record = verdict_record(verdict, detail)
+    record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, TIME_DIGITS)}
+    return record
 
 
 def verdict_record(verdict: Verdict, detail: Detail) -> Record:

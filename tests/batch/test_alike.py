@@ -3,6 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from fixture_design.batch.alike import Alike
 from fixture_design.batch.alike.plan import QUESTIONS
 from fixture_design.batch.alike.structure import cut, numbers_of, structure_of
 from fixture_design.batch.item import Item
+from fixture_design.batch.items import items_of as items_in
 from fixture_design.batch.part_cache import PartCache
 from fixture_design.batch.reading import layout_of
-from fixture_design.batch.records import entry_of
+from fixture_design.batch.records import Detail, entry_of
 from fixture_design.layout import (
     Answer,
     Evidence,
@@ -138,6 +140,26 @@ def test_full_records_have_the_margins_of_verify_and_evidence_that_proves(family
         assert entry.margin == pytest.approx(expected.margin, rel=1e-7, abs=1e-10)
         layout = layout_of(items[place])
         assert check(verdict_from(found, layout)) == []
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+@pytest.mark.parametrize("units", ["m", "mm"])
+def test_variants_of_a_sweep_are_those_of_verify(tmp_path: Path, detail: Detail, units: str) -> None:
+    contacts = smooth(np.random.default_rng(2), 8, 3)
+    sweep = {"at": 0.02, "samples": 30, "seed": 1}
+    layout = {"schema": LAYOUT, "units": units, "contacts": contacts, "require": REQUIRE, "sweep": sweep}
+    (tmp_path / "x.json").write_text(json.dumps(layout))
+    items = list(items_in([tmp_path / "x.json"]))
+    together = Alike(detail).entries(items)
+    assert len(together) == 30
+    for place, entry in together:
+        expected = entry_of(items[place], PartCache(), detail)
+        found = record(entry.line)
+        assert found["name"] == f"x[{place}]"
+        if detail == "brief":
+            assert found == record(expected.line)
+        else:
+            compare(found, record(expected.line))
 
 
 def compare(found: dict, expected: dict) -> None:

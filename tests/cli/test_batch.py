@@ -128,7 +128,7 @@ def test_malformed_files_cost_nobody_else(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_saves_and_the_same_command_goes_on(tmp_path: Path) -> None:
-    library = lines(tmp_path / "lib.jsonl", [planar(sweep={"at": 0.2, "samples": 1500}, require=HOLDS)])
+    library = lines(tmp_path / "lib.jsonl", [planar(sweep={"at": 0.2, "samples": 20_000}, require=HOLDS)])
     output = tmp_path / "o.jsonl"
     process = start(library, "-o", output)
     wait_for(lambda: output.exists() and output.stat().st_size > 0, process)
@@ -138,9 +138,9 @@ def test_ctrl_c_saves_and_the_same_command_goes_on(tmp_path: Path) -> None:
     assert "the same command goes on from there" in said
     assert "Traceback" not in said
     saved = len(records(output))
-    assert 0 < saved < 1500
+    assert 0 < saved < 20_000
     assert start(library, "-o", output).wait() in {0, 1}
-    assert [record["name"] for record in records(output)] == [f"lib:1[{number}]" for number in range(1500)]
+    assert [record["name"] for record in records(output)] == [f"lib:1[{number}]" for number in range(20_000)]
 
 
 def wait_for(condition: Callable[[], bool], process: subprocess.Popen[str]) -> None:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from fixture_design.batch.alike.pile import Kind, Pile, entries_of
-from fixture_design.batch.alike.plan import plan_of
-from fixture_design.batch.alike.structure import Structure, Structures, cut, numbers_of, structure_of
+from fixture_design.batch.alike.plan import paths_of, plan_of, row_of
+from fixture_design.batch.alike.structure import Cut, Path, Structure, Structures, cut, numbers_of, structure_of
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.reading import layout_of
 from fixture_design.batch.records import Detail
 from fixture_design.errors import InputError
+from fixture_design.layout import Layout
 
 #: Fewer layouts of one structure than this are sooner looked at one by one.
 _FEW = 2
@@ -22,6 +24,7 @@ class Alike:
     def __init__(self, detail: Detail) -> None:
         self._detail: Detail = detail
         self._structures = Structures()
+        self._swept: tuple[tuple[str, bytes | None] | None, Kind | None] = (None, None)
 
     def entries(self, items: Sequence[Item]) -> list[tuple[int, Entry]]:
         """The entries of those items that can be looked at together, by their places."""
@@ -36,36 +39,55 @@ class Alike:
     def _piles(self, items: Sequence[Item]) -> dict[Kind, Pile]:
         piles: dict[Kind, Pile] = {}
         for place, item in enumerate(items):
-            if item.text is None or item.line is None or item.variant is not None:
-                continue
-            pieces = cut(item.text)
-            numbers = None if pieces is None else numbers_of(pieces)
-            if pieces is None or numbers is None:
-                continue
-            known = self._structures.find(pieces)
+            known = self._of_variant(item) if item.variant is not None else self._of_line(item)
             if known is None:
-                structure, kind = self._new(item)
-                if structure is None:
-                    continue
-                self._structures.add(structure, kind, pieces)
-                known = self._structures.find(pieces)
-            if known is None or known[1] is None:
                 continue
-            pile = piles.setdefault(known[1], Pile())
+            kind, name, numbers = known
+            pile = piles.setdefault(kind, Pile())
             pile.places.append(place)
-            pile.names.append(known[2] or item.default_name)
+            pile.names.append(name or item.default_name)
             pile.numbers.append(numbers)
         return piles
 
-    def _new(self, item: Item) -> tuple[Structure | None, Kind | None]:
+    def _of_line(self, item: Item) -> tuple[Kind, str, list[int | float]] | None:
+        """Kind, name and numbers of a line; None if it is not to be looked at here."""
+        if item.text is None or item.line is None or (pieces := cut(item.text)) is None:
+            return None
+        numbers = numbers_of(pieces)
+        if numbers is None:
+            return None
+        known = self._structures.find(pieces)
+        if known is None:
+            structure, kind = self._new(item, pieces)
+            if structure is None:
+                return None
+            self._structures.add(structure, kind, pieces)
+            known = self._structures.find(pieces)
+        return None if known is None or known[1] is None else (known[1], known[2], numbers)
+
+    def _new(self, item: Item, pieces: Cut) -> tuple[Structure | None, Kind | None]:
         """The structure of an item that is a good layout, with what is to be done; none of one that is not."""
-        pieces = cut(item.text or b"")
         try:
             layout = layout_of(item)
-            structure = None if pieces is None else structure_of(pieces)
-            plan = None if structure is None else plan_of(layout, structure)
+            structure = structure_of(pieces)
+            return structure, None if structure is None else self._kind(layout, structure.paths)
         except InputError:  # looked at by itself it gives the record of its error
             return None, None
+
+    def _of_variant(self, item: Item) -> tuple[Kind, str, list[int | float]] | None:
+        """Likewise of a variant of a sweep; the last sweep's kind is kept."""
+        try:
+            layout = layout_of(item, placed=False)
+            if (item.source, item.text) != self._swept[0]:
+                kind = self._kind(replace(layout, units="m"), paths_of(layout.contacts))
+                self._swept = (item.source, item.text), kind
+        except InputError:
+            return None
+        kind = self._swept[1]
+        return None if kind is None else (kind, layout.name, list(row_of(layout.contacts)))
+
+    def _kind(self, layout: Layout, paths: Sequence[Path]) -> Kind | None:
+        plan = plan_of(layout, paths)
         if plan is None or (self._detail == "full" and any(len(group.owners) > 1 for group in plan.plans)):
-            return structure, None
-        return structure, Kind(plan, self._detail)
+            return None
+        return Kind(plan, self._detail)

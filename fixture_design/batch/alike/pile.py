@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import isnan
@@ -15,6 +14,7 @@ from fixture_design.batch.alike.evidence import evidence_of
 from fixture_design.batch.alike.findings import MARGINS, basis_texts, brief_findings, full_findings
 from fixture_design.batch.alike.plan import QUESTIONS, Plan
 from fixture_design.batch.alike.text import Marks, RecordText, as_json, record_text
+from fixture_design.batch.digest import input_hash
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.records import TIME_DIGITS, Detail
 
@@ -148,7 +148,7 @@ def _filled(
         words = {
             "name": as_json(pile.names[row]),
             "source": as_json(item.source),
-            "input": '"' + hashlib.sha256(item.text or b"").hexdigest() + '"',
+            "input": f'"{input_hash(item)}"',
         }
         for index, texts in places.items():
             words[f"{index} basis"] = "[" + ", ".join([texts[k] for k in table.bases[index][row].tolist()]) + "]"

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Int
 
 from fixture_design.arrays import Indices
-from fixture_design.batch.alike.structure import Path, Structure
+from fixture_design.batch.alike.structure import Path
 from fixture_design.contacts import Contact
 from fixture_design.layout import Group, Layout, groups_of
 
@@ -61,15 +61,19 @@ class Plan:
         return 3 if self.points.shape[1] == 2 else 6
 
 
-def plan_of(layout: Layout, structure: Structure) -> Plan | None:
-    """The plan for layouts like this one; None if `verify` has to look at them one by one."""
+def plan_of(layout: Layout, paths: Sequence[Path]) -> Plan | None:
+    """The plan for layouts like this one; None if `verify` has to look at them one by one.
+
+    Args:
+        paths: where each of their numbers stands in the text.
+    """
     simple = not (layout.elements or layout.bodies or layout.part or layout.sweep is not None)
     if not simple or not layout.contacts or len(layout.contacts) > MOST_CONTACTS:
         return None
     groups = groups_of(layout, layout.contacts)
     if any(require not in QUESTIONS for group in groups for require in group.require):
         return None
-    columns = {path: column for column, path in enumerate(structure.paths)}
+    columns = {path: column for column, path in enumerate(paths)}
     points = [_column_row(columns, ("contacts", k, "point")) for k in range(len(layout.contacts))]
     normals = [row for k in range(len(layout.contacts)) for row in _normal_columns(columns, k)]
     frictions = [columns.get(("contacts", k, "friction"), columns.get(("friction",), -1)) for k in range(len(points))]
@@ -85,6 +89,37 @@ def plan_of(layout: Layout, structure: Structure) -> Plan | None:
 
 def _indices(values: Sequence[int]) -> Indices:
     return np.array(values, dtype=np.int64)
+
+
+def paths_of(contacts: Sequence[Contact]) -> tuple[Path, ...]:
+    """Where the numbers of contacts would stand in a text: for layouts that come from none, in `row_of`'s order."""
+    return tuple(
+        path
+        for k, contact in enumerate(contacts)
+        for path in (
+            *(("contacts", k, "point", j) for j in range(len(contact.point))),
+            *(
+                ("contacts", k, "normals", clause, alternative, j)
+                for clause, normals in enumerate(contact.clauses)
+                for alternative in range(len(normals))
+                for j in range(len(contact.point))
+            ),
+            ("contacts", k, "friction"),
+        )
+    )
+
+
+def row_of(contacts: Sequence[Contact]) -> list[float]:
+    """The numbers of contacts, in the order of `paths_of`."""
+    return [
+        number
+        for contact in contacts
+        for number in (
+            *contact.point.tolist(),
+            *(value for normal in contact.normals for value in normal.tolist()),
+            contact.friction,
+        )
+    ]
 
 
 def _column_row(columns: dict[Path, int], path: Path) -> list[int]:
