@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,6 +19,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from time import monotonic
+from types import ModuleType
 
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.records import TimeLimitError, WorkerError, failure
@@ -129,7 +131,7 @@ class Crew:
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=work, args=(theirs, self._look_at), daemon=True)
-        with _one_thread(), _without_interrupts():
+        with _one_thread(), _without_interrupts(), _without_main():
             process.start()
         theirs.close()  # so that the end of the process is the end of the pipe
         return _Worker(process, ours)
@@ -227,6 +229,19 @@ def _one_thread() -> Iterator[None]:
     finally:
         for name in added:
             del os.environ[name]
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """Processes started in here do not import the script that runs: workers have no use for it, and it may be one that
+    cannot be imported (from a pipe), or that would start all over (without `if __name__ == "__main__"`).
+    """
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 @contextmanager

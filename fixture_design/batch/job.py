@@ -66,8 +66,6 @@ def verify_batch(
 ) -> Iterator[dict[str, Any]]:
     """The records of many layouts in input order, made in worker processes, as they become known.
 
-    Scripts need the usual ``if __name__ == "__main__":`` around what calls this, since workers import the script.
-
     Args:
         paths: layout files, .jsonl of layouts, folders of both, globs.
         brief: without witnesses, margins and contacts.
