@@ -49,7 +49,7 @@ def verifying(detail: Detail) -> Look:
         done = {place for place, _ in together}
         for place, item in enumerate(items):
             if place not in done:
-                yield [(place, entry_of(item, parts, detail))]
+                yield [(place, entry_of(item, parts, detail, alike.entry_of_found))]
 
     return look
 

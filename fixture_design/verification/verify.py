@@ -64,19 +64,19 @@ _NAMES_SHOWN = 5
 def verify(
     layout: Layout,
     tolerances: Tolerances = DEFAULT,
-    geometry: PartGeometry | Polygon | None = None,
+    found: FoundContacts | None = None,
     sets: bool = True,
 ) -> Verdict:
     """Contacts, findings and requirements of a layout.
 
     Args:
-        geometry: of the layout's part (`geometry.load_geometry`), where it is loaded already.
+        found: the layout's contacts, where they are known already (`contacts_of`).
         sets: whether the admissible sets are wanted, which no answer needs.
 
     Raises:
         InputError: the layout has no contacts at all, its geometry cannot be used, or an element is off the surface.
     """
-    found = contacts_of(layout, geometry)
+    found = found or contacts_of(layout)
     notes = list(found.notes) + coincident_notes(found.contacts, found.report)
     groups = groups_of(layout, found.contacts)
     verdicts = group_verdicts(groups, found.report, notes, tolerances, sets)

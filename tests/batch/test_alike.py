@@ -4,6 +4,7 @@ import json
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,24 +12,24 @@ import pytest
 from fixture_design.batch.alike import Alike
 from fixture_design.batch.alike.plan import QUESTIONS
 from fixture_design.batch.alike.structure import cut, numbers_of, structure_of
-from fixture_design.batch.item import Item
+from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.items import items_of as items_in
 from fixture_design.batch.part_cache import PartCache
 from fixture_design.batch.reading import layout_of
 from fixture_design.batch.records import Detail, entry_of
+from fixture_design.contacts import Contact
 from fixture_design.layout import (
     Answer,
     Evidence,
     Finding,
     GroupVerdict,
-    Layout,
     Motion,
     RequirementVerdict,
     Singular,
     Verdict,
     Weights,
 )
-from fixture_design.verification import check
+from fixture_design.verification import check, contacts_of
 from tests.batch.layouts import LAYOUT
 
 COUNT = 40
@@ -139,7 +140,7 @@ def test_full_records_have_the_margins_of_verify_and_evidence_that_proves(family
         compare(found, record(expected.line))
         assert entry.margin == pytest.approx(expected.margin, rel=1e-7, abs=1e-10)
         layout = layout_of(items[place])
-        assert check(verdict_from(found, layout)) == []
+        assert check(verdict_from(found, layout.contacts)) == []
 
 
 @pytest.mark.parametrize("detail", ["brief", "full"])
@@ -162,6 +163,52 @@ def test_variants_of_a_sweep_are_those_of_verify(tmp_path: Path, detail: Detail,
             compare(found, record(expected.line))
 
 
+BOX = [(0.1, 0.0, 0.0), (-0.1, 0.0, 0.0), (0.0, 0.08, 0.0), (0.0, -0.08, 0.0), (0.0, 0.0, 0.05), (0.0, 0.0, -0.05)]
+
+
+def on_box(tmp_path: Path, rng: np.random.Generator, **keys: object) -> dict[str, object]:
+    """Balls on the faces of a box, a few of them on its edges and corners."""
+    (tmp_path / "box.obj").write_text(OBJ)
+    half, elements = np.array([0.1, 0.08, 0.05]), []
+    for k in range(9):
+        face = BOX[(k if k < 6 else int(rng.integers(6)))]
+        inside = np.where(rng.random(3) < 0.05, half, rng.uniform(-0.8, 0.8, 3) * half)
+        at = np.where(np.abs(face) > 0, face, np.round(inside, 5))
+        elements.append({"name": f"E{k}", "role": "locator" if k < 7 else "clamp", "at": at.tolist()})
+    stages = [{"name": "s", "active": ["clamp", "E1"], "require": ["accessible"]}]
+    return {"schema": LAYOUT, "part": {"mesh": "box.obj"}, "elements": elements, "stages": stages, **keys}
+
+
+OBJ = "".join(f"v {x * 0.1} {y * 0.08} {z * 0.05}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)) + "".join(
+    f"f {a} {b} {c}\nf {a} {c} {d}\n"
+    for a, b, c, d in ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+)
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_layouts_on_parts_are_decided_alike(tmp_path: Path, detail: Detail, friction: float) -> None:
+    rng, parts, alike, quick = np.random.default_rng(8), PartCache(), Alike(detail), 0
+
+    def counted(*arguments: Any) -> Entry | None:
+        nonlocal quick
+        entry = alike.entry_of_found(*arguments)
+        quick += entry is not None
+        return entry
+
+    for number in range(25):
+        layout = on_box(tmp_path, rng, name=f"b{number}", require=REQUIRE, friction=friction)
+        item, before = Item(str(tmp_path / f"lib.jsonl:{number}"), json.dumps(layout).encode(), number), quick
+        found, expected = (record(entry_of(item, parts, detail, q).line) for q in (counted, None))
+        if detail == "brief":
+            assert found == expected
+            continue
+        compare(found, expected)
+        if quick > before:
+            assert check(verdict_from(found, contacts_of(layout_of(item)).contacts)) == []
+    assert quick > 12 or (detail == "full" and friction > 0)
+
+
 def compare(found: dict, expected: dict) -> None:
     """Everything but the witnesses is the same; these are of the same kind."""
     for name, group in expected["groups"].items():
@@ -179,7 +226,7 @@ def compare(found: dict, expected: dict) -> None:
     assert rest[0] == rest[1]
 
 
-def verdict_from(record: dict, layout: Layout) -> Verdict:
+def verdict_from(record: dict, contacts: tuple[Contact, ...]) -> Verdict:
     """The verdict that a full record tells, for the checker."""
     groups = {
         name: GroupVerdict(name, tuple(group["contacts"]), {c: finding_from(group[c]) for c in QUESTIONS})
@@ -193,7 +240,7 @@ def verdict_from(record: dict, layout: Layout) -> Verdict:
     scale = np.array(record["run"]["reference"]), record["run"]["length"]
     return Verdict(
         name=record["name"], source=None, space=record["space"], satisfied=satisfied, groups=groups,
-        contacts=layout.contacts, requirements=rows, notes=(), reference=scale[0], length=scale[1], run={},
+        contacts=contacts, requirements=rows, notes=(), reference=scale[0], length=scale[1], run={},
     )  # fmt: skip
 
 

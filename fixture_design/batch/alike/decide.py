@@ -13,6 +13,7 @@ import numpy as np
 from fixture_design.arrays import Indices, Rows, Vector
 from fixture_design.batch.alike.plan import QUESTIONS, GroupPlan, Plan
 from fixture_design.cones.kernel import Closures, closure_tests
+from fixture_design.contacts import Scale
 from fixture_design.tolerances import COINCIDENT, DEFAULT, FARTHEST, MOST_FRICTION, SUM_ROUNDING
 
 #: Answers as numbers.
@@ -62,8 +63,11 @@ class Decided:
     closures: Closures | None
 
 
-def numbers_of(plan: Plan, given: np.ndarray) -> Numbers:
-    """The numbers of n layouts, shape (n, h), as points, normals and coefficients."""
+def numbers_of(plan: Plan, given: np.ndarray, report: Scale | None = None) -> Numbers:
+    """The numbers of n layouts, shape (n, h), as points, normals and coefficients.
+
+    ``report``: the scale of the report, where it is not the contacts' own.
+    """
     points = np.ascontiguousarray(given[:, plan.points])  # so that sums have the order that `scale_of` has
     units = plan.layout.units
     points = points / 1000 if units == "mm" else points * 0.0254 if units == "in" else points
@@ -78,6 +82,8 @@ def numbers_of(plan: Plan, given: np.ndarray) -> Numbers:
         coefficients = given[:, plan.coefficients]
         fit &= ((coefficients >= 0) & (coefficients <= MOST_FRICTION)).all(axis=1)
         reference, length, sound = _scale(points)
+    if report is not None:
+        reference, length = np.tile(report.reference, (len(given), 1)), np.full(len(given), report.length)
     fit &= sound & ~_coincide(points, length)
     return Numbers(points, unit, normals, frictions, reference, length, fit)
 

@@ -5,17 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from fixture_design.batch.alike.pile import Kind, Pile, entries_of
 from fixture_design.batch.alike.plan import paths_of, plan_of, row_of
 from fixture_design.batch.alike.structure import Cut, Path, Structure, Structures, cut, numbers_of, structure_of
+from fixture_design.batch.alike.text import as_json
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.reading import layout_of
 from fixture_design.batch.records import Detail
+from fixture_design.contacts import Contact
 from fixture_design.errors import InputError
 from fixture_design.layout import Layout
+from fixture_design.verification.found import FoundContacts
 
 #: Fewer layouts of one structure than this are sooner looked at one by one.
 _FEW = 2
+#: Forms of layouts on parts that are kept.
+_MOST_FOUND = 256
 
 
 class Alike:
@@ -24,6 +31,7 @@ class Alike:
     def __init__(self, detail: Detail) -> None:
         self._detail: Detail = detail
         self._structures = Structures()
+        self._found: dict[object, Kind | None] = {}
         self._swept: tuple[tuple[str, bytes | None] | None, Kind | None] = (None, None)
 
     def entries(self, items: Sequence[Item]) -> list[tuple[int, Entry]]:
@@ -35,6 +43,32 @@ class Alike:
             if len(pile.places) >= _FEW:
                 found += entries_of(kind, pile, items)
         return found
+
+    def entry_of_found(self, item: Item, layout: Layout, found: FoundContacts, start: float) -> Entry | None:
+        """The entry of a layout whose contacts geometry has found; None if `verify` has to look at it.
+
+        Contacts that are exact or as good as that, and have neither clearance nor torsion, are as those of a text.
+        """
+        contacts = found.contacts
+        plain = not any(c.provenance.normal_error or c.torsion or c.clearance or c.linked for c in contacts)
+        if self._detail == "sets" or not plain or not (layout.elements or layout.bodies):
+            return None
+        key = (layout.space, layout.stages, tuple(layout.require.items()), found.notes, *map(_form, contacts))
+        if key not in self._found:
+            if len(self._found) >= _MOST_FOUND:
+                self._found.clear()
+            given = Layout("", layout.space, contacts=contacts, stages=layout.stages, require=layout.require)
+            kind = self._kind(given, paths_of(contacts))
+            self._found[key] = kind and replace(kind, plan=replace(kind.plan, notes=found.notes))
+        kind = self._found[key]
+        if kind is None:
+            return None
+        words = {f"feature {k}": as_json(c.feature) for k, c in enumerate(contacts) if c.feature is not None}
+        values = {
+            f"distance {k}": np.array([[c.distance + 0.0]]) for k, c in enumerate(contacts) if c.distance is not None
+        }
+        pile = Pile([0], [layout.name], [list(row_of(contacts))], found.report, words, values)
+        return next((entry for _, entry in entries_of(kind, pile, [item], start)), None)
 
     def _piles(self, items: Sequence[Item]) -> dict[Kind, Pile]:
         piles: dict[Kind, Pile] = {}
@@ -91,3 +125,10 @@ class Alike:
         if plan is None or (self._detail == "full" and any(len(group.owners) > 1 for group in plan.plans)):
             return None
         return Kind(plan, self._detail)
+
+
+def _form(contact: Contact) -> tuple[object, ...]:
+    """Everything about a contact but its numbers and what it touches."""
+    sizes = tuple(len(clause) for clause in contact.clauses)
+    kind, slip = contact.provenance.kind, contact.provenance.slip_error
+    return contact.name, contact.role, sizes, kind, slip, contact.distance is None, contact.feature is None

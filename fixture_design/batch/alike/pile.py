@@ -17,6 +17,7 @@ from fixture_design.batch.alike.text import Marks, RecordText, as_json, record_t
 from fixture_design.batch.digest import input_hash
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.records import TIME_DIGITS, Detail
+from fixture_design.contacts import Scale
 
 
 @dataclass(eq=False)
@@ -34,11 +35,19 @@ class Kind:
 
 @dataclass(eq=False)
 class Pile:
-    """Items of one kind: their places in the chunk, the layouts' names and numbers."""
+    """Items of one kind: their places in the chunk, the layouts' names and numbers.
+
+    Attributes:
+        report: the scale of the report, where it is not that of the contacts.
+        words, values: further texts and numbers of all records, by the names of their marks.
+    """
 
     places: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     numbers: list[list[int | float]] = field(default_factory=list)
+    report: Scale | None = None
+    words: dict[str, str] = field(default_factory=dict)
+    values: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass(eq=False)
@@ -57,14 +66,18 @@ class _Table:
     margins: np.ndarray
 
 
-def entries_of(kind: Kind, pile: Pile, items: Sequence[Item]) -> list[tuple[int, Entry]]:
-    """The entries of those of a pile that are decided here, by their places in the chunk."""
-    start = perf_counter()
+def entries_of(kind: Kind, pile: Pile, items: Sequence[Item], start: float | None = None) -> list[tuple[int, Entry]]:
+    """The entries of those of a pile that are decided here, by their places in the chunk.
+
+    ``start``: when the work on them was begun; by default it is now.
+    """
+    start = perf_counter() if start is None else start
     try:
         given = np.array(pile.numbers, dtype=np.float64)
     except OverflowError:  # a whole number that no float holds
         return []
-    table = _table(kind, numbers_of(kind.plan, given))
+    table = _table(kind, numbers_of(kind.plan, given, pile.report))
+    table.values.update(pile.values)
     each = (perf_counter() - start) / max(int(table.good.sum()), 1)
     table.values["time"] = np.full((len(given), 1), round(each, TIME_DIGITS))
     by_key: dict[bytes, list[int]] = {}
@@ -145,7 +158,7 @@ def _filled(
     found = []
     for row, numbers in zip(rows, columns, strict=True):
         item = items[pile.places[row]]
-        words = {
+        words = pile.words | {
             "name": as_json(pile.names[row]),
             "source": as_json(item.source),
             "input": f'"{input_hash(item)}"',

@@ -46,6 +46,7 @@ class Plan:
         normals: columns of the normals, shape (k, p).  frictions: column of each contact's friction, -1 for none.
         coefficients: all columns of coefficients of friction, also those that no contact has.
         plans: the groups, those with the same contacts together.
+        notes: what `contacts_of` has to say about them.
     """
 
     layout: Layout
@@ -55,6 +56,7 @@ class Plan:
     frictions: Indices
     coefficients: Indices
     plans: tuple[GroupPlan, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def dimension(self) -> int:

@@ -23,7 +23,7 @@ from fixture_design.verification.checker import sum_up
 from fixture_design.version import VERSION
 
 #: Marks as they stand in a text: a number small enough to be a coefficient of friction, or a word.
-_MARK = re.compile(r'123\.(\d{5})7|"@([a-z]+)"|\[\["@([a-z0-9 ]+)", 0\]\]')
+_MARK = re.compile(r'123\.(\d{5})7|"@([a-z0-9 ]+)"|\[\["@([a-z0-9 ]+)", 0\]\]')
 #: Words for texts.
 NAME, SOURCE, INPUT = "@name", "@source", "@input"
 
@@ -84,7 +84,7 @@ def record_text(plan: Plan, findings: Mapping[str, Mapping[str, Finding]], mark:
         groups=groups,
         contacts=() if detail == "brief" else tuple(_marked(plan.layout.contacts, mark)),
         requirements=requirements,
-        notes=tuple(notes),
+        notes=(*plan.notes, *notes),
         reference=np.array(mark("reference", plane)),
         length=mark("length", 1)[0],
         run={"version": VERSION, "kernel": KERNEL, "tolerances": DEFAULT.as_dict(), "input": INPUT},
@@ -109,7 +109,13 @@ def _marked(contacts: tuple[Contact, ...], mark: Marks) -> list[Contact]:
         for clause in contact.clauses:
             clauses.append(tuple(np.array(mark(f"normal {index} {count + k}", plane)) for k in range(len(clause))))
             count += len(clause)
-        marked.append(replace(contact, point=point, clauses=tuple(clauses), friction=mark(f"friction {index}", 1)[0]))
+        friction = mark(f"friction {index}", 1)[0]
+        given = replace(contact, point=point, clauses=tuple(clauses), friction=friction, slips=())
+        if contact.distance is not None:
+            given = replace(given, distance=mark(f"distance {index}", 1)[0])
+        if contact.feature is not None:
+            given = replace(given, feature=f"@feature {index}")
+        marked.append(given)
     return marked
 
 
