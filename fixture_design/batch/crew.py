@@ -31,7 +31,7 @@ CHUNK_SECONDS = 0.3
 #: Items in a worker's first chunk, and in the largest.
 FIRST_CHUNK, LARGEST_CHUNK = 8, 2000
 #: Chunks that may be finished or under way beyond the first one that is not.
-WINDOW = 16
+WINDOW = 8
 #: Deaths of a worker on one item alone before it is given up.
 DEATHS = 2
 #: Processes that may end before they begin to work, one after the other, before that is an error.

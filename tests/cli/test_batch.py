@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.batch.layouts import FAILS, HOLDS, lines, planar
+from tests.batch.layouts import FAILS, HOLDS, LOCATORS, lines, planar
 
 PROGRAM = [sys.executable, "-c", "from fixture_design.cli import main; main()", "batch"]
 ROOT = Path(__file__).resolve().parents[2]
@@ -152,7 +152,10 @@ def wait_for(condition: Callable[[], bool], process: subprocess.Popen[str]) -> N
 
 @pytest.mark.slow
 def test_killed_at_random_moments(tmp_path: Path) -> None:
-    layouts = [planar(f"n{n}", require=HOLDS, friction=n / 1e4) for n in range(3000)]
+    # every other one has contacts of names of its own, and is looked at alone
+    layouts = [planar(f"n{n}", require=HOLDS, friction=n / 1e5) for n in range(6000)]
+    for n, layout in enumerate(layouts[::2]):
+        layout["contacts"] = [contact | {"name": f"{contact['name']} {n}"} for contact in LOCATORS]
     library, output = lines(tmp_path / "lib.jsonl", layouts), tmp_path / "o.jsonl"
     assert start(library, "-o", tmp_path / "whole.jsonl").wait() == 0
     rng = random.Random(4)
