@@ -32,7 +32,7 @@ from fixture_design.layout import (
 from fixture_design.verification import check, contacts_of
 from tests.batch.layouts import LAYOUT
 
-COUNT = 40
+COUNT = 25
 REQUIRE = {"locators": ["deterministic", "strongly_accessible"], "all": ["form_closure", "force_closure"]}
 Make = Callable[[np.random.Generator], list[dict[str, object]]]
 
@@ -123,9 +123,9 @@ def test_stages_units_and_numbers_of_any_form() -> None:
         {"name": "c", "active": ["support"], "require": ["form_closure"]},
     ]
     for units in ("m", "mm", "in"):
-        items = items_of("smooth", stages=stages, units=units, friction=1e-1)
+        items = items_of("smooth", stages=stages, units=units, friction=1e-1)[:6]
         together = Alike("brief").entries(items)
-        assert len(together) > COUNT // 3
+        assert len(together) >= 3
         for place, entry in together:
             assert record(entry.line) == record(entry_of(items[place], PartCache(), "brief").line)
 
@@ -196,7 +196,7 @@ def test_layouts_on_parts_are_decided_alike(tmp_path: Path, detail: Detail, fric
         quick += entry is not None
         return entry
 
-    for number in range(25):
+    for number in range(10):
         layout = on_box(tmp_path, rng, name=f"b{number}", require=REQUIRE, friction=friction)
         item, before = Item(str(tmp_path / f"lib.jsonl:{number}"), json.dumps(layout).encode(), number), quick
         found, expected = (record(entry_of(item, parts, detail, q).line) for q in (counted, None))
@@ -206,7 +206,7 @@ def test_layouts_on_parts_are_decided_alike(tmp_path: Path, detail: Detail, fric
         compare(found, expected)
         if quick > before:
             assert check(verdict_from(found, contacts_of(layout_of(item)).contacts)) == []
-    assert quick > 12 or (detail == "full" and friction > 0)
+    assert quick > 4 or (detail == "full" and friction > 0)
 
 
 def compare(found: dict, expected: dict) -> None:

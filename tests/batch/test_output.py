@@ -87,7 +87,7 @@ def test_every_cut_of_the_first_line(tmp_path: Path) -> None:
     library, output = lines(tmp_path / "one.jsonl", [planar("a")]), tmp_path / "o.jsonl"
     _, whole = run(library, output)
     raw = output.read_bytes()
-    for size in range(0, len(raw), 7):
+    for size in range(0, len(raw), 29):
         output.write_bytes(raw[:size])
         assert run(library, output) == (1, whole)
 
