@@ -199,3 +199,18 @@ def test_workers_are_closed_when_the_output_is_refused(library: Path, monkeypatc
     with pytest.raises(FileFormatError):
         job_module.run_batch([library], library, workers)
     assert closed
+
+
+@pytest.mark.parametrize("detail", ["brief", "full", "sets"])
+def test_records_follow_the_schema_of_verdicts(library: Path, tmp_path: Path, detail: Detail) -> None:
+    from pydantic import TypeAdapter  # noqa: PLC0415
+
+    from fixture_design.io.verdict_schema import FailureRecord, VerdictRecord  # noqa: PLC0415
+
+    run(library, tmp_path / "o.jsonl", detail=detail)
+    adapter = TypeAdapter(VerdictRecord | FailureRecord)
+    for line in (tmp_path / "o.jsonl").read_text().splitlines():
+        adapter.validate_json(line, strict=True)
+    first = json.loads((tmp_path / "o.jsonl").read_text().splitlines()[0])["groups"]["all"]
+    assert bool(first.get("admissible_forces")) == (detail == "sets")
+    assert ("bidirectional" in first) == (detail == "sets")
