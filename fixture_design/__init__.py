@@ -11,7 +11,8 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > io > design > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
+    cli > batch > viewing > io > design > verification > geometry | analysis > layout > contacts > cones
+        > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
@@ -31,7 +32,8 @@ The folders state the theory, and each imports only from those to its right::
 * `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.
 * `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
-* `io`: files. `cli`: the command line.
+* `io`: files. `viewing`: evidence in words, the sheet to sign. `batch`: thousands of layouts in worker processes.
+  `cli`: the command line.
 
 How an answer is decided
 ========================
@@ -58,6 +60,7 @@ from typing import TYPE_CHECKING
 from fixture_design.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from fixture_design.batch import verify_batch
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
     from fixture_design.design import DesignResult, Task, design
@@ -80,6 +83,7 @@ _HOME = {
     "read_task": "io",
     "task_of_part": "io",
     "verify": "verification",
+    "verify_batch": "batch",
     "write_layout": "io",
 }
 
@@ -98,6 +102,7 @@ __all__ = [
     "read_task",
     "task_of_part",
     "verify",
+    "verify_batch",
     "write_layout",
 ]
 

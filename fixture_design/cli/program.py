@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 from typer.exceptions import TyperException
 
+from fixture_design.cli.batch import batch
 from fixture_design.cli.design import design
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
@@ -28,6 +29,8 @@ app = typer.Typer(
 )
 app.command()(verify)
 app.command()(design)
+
+app.command()(batch)
 app.command()(schema)
 
 

@@ -31,13 +31,18 @@ def input_files(layout: Layout) -> tuple[InputFile, ...]:
     """
     named = [("layout", layout.source)] if layout.source is not None and layout.source.is_file() else []
     if layout.part is not None and layout.part.file is not None:
-        named += [("part", file) for file in _with_meshes(layout.part.file)]
-    named += [(f"body {body.name}", file) for body in layout.bodies for file in _with_meshes(body.file)]
+        named += [("part", file) for file in with_meshes(layout.part.file)]
+    named += [(f"body {body.name}", file) for body in layout.bodies for file in with_meshes(body.file)]
     named += [(f"load {load.name}", load.path) for load in layout.loads if load.path is not None]
     return tuple(InputFile(role, file, _sha256(file)) for role, file in dict.fromkeys(named))
 
 
-def _with_meshes(file: Path) -> list[Path]:
+def with_meshes(file: Path) -> list[Path]:
+    """A file and, where it is a URDF, the meshes that it names.
+
+    Raises:
+        InputError: it cannot be read, or a mesh is not there.
+    """
     if file.suffix.lower() != ".urdf":
         return [file]
     meshes = [mesh.get("filename", "") for mesh in robot_of(file).iter() if _is_mesh(mesh)]

@@ -2,7 +2,7 @@
 
 from fixture_design.io.csv_export import write_csv
 from fixture_design.io.design_record import design_to_dict
-from fixture_design.io.documents import Document, read_document
+from fixture_design.io.documents import Document, document_of, line_document, read_bytes, read_document
 from fixture_design.io.json_writer import dumps
 from fixture_design.io.layout_file import layout_from_data, layout_text, read_layout, write_layout
 from fixture_design.io.places import Place
@@ -18,11 +18,14 @@ __all__ = [
     "Document",
     "Place",
     "design_to_dict",
+    "document_of",
     "dumps",
     "error_record",
     "json_schema",
     "layout_from_data",
     "layout_text",
+    "line_document",
+    "read_bytes",
     "read_document",
     "read_layout",
     "read_task",

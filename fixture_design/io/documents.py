@@ -40,9 +40,26 @@ def read_document(path: str | Path) -> Document:
         FileFormatError: missing, a folder, a pipe or device, not permitted, not text, empty, not valid, or not a
             mapping.
     """
-    text = _text(Path(path))
+    return document_of(read_bytes(Path(path)), path)
+
+
+def document_of(raw: bytes, path: str | Path) -> Document:
+    """What `read_document` makes of a file that holds ``raw``; ``path`` tells whether it is JSON, and is for messages.
+
+    Raises:
+        FileFormatError: not text, empty, not valid, or not a mapping.
+    """
     parse = parse_json if Path(path).suffix.lower() == ".json" else parse_yaml
-    return as_document(*parse(text, str(path)), str(path))
+    return as_document(*parse(_decode(raw, Path(path)), str(path)), str(path))
+
+
+def line_document(raw: bytes, source: str) -> Document:
+    """A JSON object in one line of a file, as a document; ``source`` is what messages call that line.
+
+    Raises:
+        FileFormatError: not text, not JSON, or not an object.
+    """
+    return as_document(*parse_json(_decode(raw, Path(source)), source), source)
 
 
 def as_document(values: object, place: Place, source: str) -> Document:
@@ -81,11 +98,16 @@ def _texts(values: object, path: KeyPath = ()) -> Iterator[tuple[KeyPath, str]]:
             yield from _texts(value, (*path, index))
 
 
-def _text(path: Path) -> str:
+def read_bytes(path: Path) -> bytes:
+    """What a file holds.
+
+    Raises:
+        FileFormatError: missing, a folder, a pipe or device, not permitted.
+    """
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never end, or never begin
             raise FileFormatError("this is no regular file", source=path, expected="a YAML or JSON file")
-        raw = path.read_bytes()
+        return path.read_bytes()
     except FileNotFoundError as cause:
         raise FileFormatError("there is no such file", source=path, expected=_neighbours(path)) from cause
     except IsADirectoryError as cause:
@@ -96,7 +118,6 @@ def _text(path: Path) -> str:
         raise
     except (OSError, ValueError) as cause:  # ValueError: a NUL in the name
         raise FileFormatError(f"the file cannot be read: {cause}", source=path) from cause
-    return _decode(raw, path)
 
 
 def _decode(raw: bytes, path: Path) -> str:

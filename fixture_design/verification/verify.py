@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -45,6 +46,9 @@ from fixture_design.verification.use import with_use
 from fixture_design.verification.weight import weight_notes
 from fixture_design.version import VERSION
 
+if TYPE_CHECKING:
+    from fixture_design.geometry import PartGeometry, Polygon
+
 #: The questions this version answers about every group, in the order they are reported.
 QUESTIONS = {
     "deterministic": deterministic,
@@ -58,16 +62,25 @@ QUESTIONS = {
 _NAMES_SHOWN = 5
 
 
-def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
+def verify(
+    layout: Layout,
+    tolerances: Tolerances = DEFAULT,
+    found: FoundContacts | None = None,
+    sets: bool = True,
+) -> Verdict:
     """Contacts, findings and requirements of a layout.
+
+    Args:
+        found: the layout's contacts, where they are known already (`contacts_of`).
+        sets: whether the admissible sets are wanted, which no answer needs.
 
     Raises:
         InputError: the layout has no contacts at all, its geometry cannot be used, or an element is off the surface.
     """
-    found = contacts_of(layout)
+    found = found or contacts_of(layout)
     notes = list(found.notes) + coincident_notes(found.contacts, found.report)
     groups = groups_of(layout, found.contacts)
-    verdicts = group_verdicts(groups, found.report, notes, tolerances)
+    verdicts = group_verdicts(groups, found.report, notes, tolerances, sets)
     verdicts = {group.name: with_use(verdicts[group.name], layout, group, found, tolerances) for group in groups}
     notes += [*weight_notes(layout, groups, found), *_preload_notes(layout)]
     requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
@@ -86,8 +99,11 @@ def verify(layout: Layout, tolerances: Tolerances = DEFAULT) -> Verdict:
     )
 
 
-def contacts_of(layout: Layout) -> FoundContacts:
+def contacts_of(layout: Layout, geometry: PartGeometry | Polygon | None = None) -> FoundContacts:
     """Every contact of a layout: those of its elements in file order, of its bodies, then those given outright.
+
+    Args:
+        geometry: of the layout's part, where it is loaded already.
 
     Raises:
         ContactError: there are none.  FileFormatError: the part's file is not there.  GeometryError and
@@ -101,7 +117,7 @@ def contacts_of(layout: Layout) -> FoundContacts:
         return FoundContacts(layout.contacts, scale_of(layout.contacts), ())
     from fixture_design.geometry import contacts_of_elements  # noqa: PLC0415 - Drake only where there is geometry
 
-    found = contacts_of_elements(layout)
+    found = contacts_of_elements(layout, geometry)
     contacts = (*found.contacts, *layout.contacts)
     return FoundContacts(contacts, Scale(found.box_center, found.half_diagonal), found.notes, found.geometry)
 
@@ -120,7 +136,7 @@ def _check_part_file(layout: Layout) -> None:
 
 
 def group_verdicts(
-    groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances
+    groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances, sets: bool = True
 ) -> dict[str, GroupVerdict]:
     """The verdict of every group; groups with the same contacts are looked at once."""
     sharing: dict[tuple[str, ...], list[Group]] = {}
@@ -129,12 +145,14 @@ def group_verdicts(
     verdicts: dict[str, GroupVerdict] = {}
     for alike in sharing.values():
         names = [group.name for group in alike]
-        found = group_verdict(replace(alike[0], name=" and ".join(names)), report, notes, tolerances)
+        found = group_verdict(replace(alike[0], name=" and ".join(names)), report, notes, tolerances, sets)
         verdicts |= {name: replace(found, name=name) for name in names}
     return {group.name: verdicts[group.name] for group in groups}
 
 
-def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tolerances) -> GroupVerdict:
+def group_verdict(
+    group: Group, report: Scale, notes: list[str], tolerances: Tolerances, sets: bool = True
+) -> GroupVerdict:
     """Every question asked of one group; all answers are None for an empty one."""
     names = tuple(contact.name for contact in group.contacts)
     if not group.contacts:
@@ -149,6 +167,8 @@ def group_verdict(group: Group, report: Scale, notes: list[str], tolerances: Tol
     unmeasured = [name for name, f in findings.items() if f.margin is None and f.answer is not Answer.UNDECIDED]
     if unmeasured:
         notes.append(f"{group.name}: too many contacts or alternatives for the margin of {', '.join(unmeasured)}")
+    if not sets:
+        return GroupVerdict(group.name, names, findings)
     try:
         displacements = admissible_displacements(restraint)
         forces = admissible_forces(displacements, tolerances)

@@ -1,0 +1,267 @@
+"""Worker processes that look at items: results in order, whatever dies or hangs.
+
+A chunk of items goes to an idle worker, which sends back entries as they become known. If the worker dies, what it sent
+counts, and the rest is looked at again item by item; an item on which a worker dies twice, alone, has the error as its
+record. An item that takes too long has its worker killed, and the error as its record.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import islice
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from time import monotonic
+from types import ModuleType
+
+from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.records import TimeLimitError, WorkerError, failure
+from fixture_design.batch.worker import Known, LookAt, work
+from fixture_design.errors import FixtureDesignError
+
+#: A chunk should take a worker about so long [s]: long enough that handing it over costs nothing.
+CHUNK_SECONDS = 0.3
+#: Items in a worker's first chunk, and in the largest.
+FIRST_CHUNK, LARGEST_CHUNK = 8, 2000
+#: Chunks that may be finished or under way beyond the first one that is not.
+WINDOW = 8
+#: Deaths of a worker on one item alone before it is given up.
+DEATHS = 2
+#: Processes that may end before they begin to work, one after the other, before that is an error.
+_FAILED_STARTS = 3
+#: Longest time between two looks at whether to stop [s].
+_TICK = 0.25
+#: Libraries that would otherwise start a thread a processor in each worker.
+_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+@dataclass
+class _Task:
+    """Items with their numbers in the batch; ``deaths``: of workers, on it alone."""
+
+    numbered: list[tuple[int, Item]]
+    deaths: int = 0
+
+
+@dataclass
+class _Worker:
+    """A process, and what it is doing.
+
+    Attributes:
+        task: None while it is idle; ``left``: the places in it that have no entry yet.
+        heard: when it last said something, or was given something [s].
+    """
+
+    process: BaseProcess
+    connection: Connection
+    task: _Task | None = None
+    left: dict[int, None] = field(default_factory=dict)
+    started: bool = False
+    heard: float = field(default_factory=monotonic)
+    given: float = 0.0
+
+
+class Crew:
+    """Looks at items in several processes; `close` ends them."""
+
+    def __init__(self, look_at: LookAt, jobs: int, limit: float | None = None) -> None:
+        """``limit``: seconds that one layout may take; None for any."""
+        self._look_at, self._jobs, self._limit = look_at, jobs, limit
+        self._workers: list[_Worker] = []
+        self._again: deque[_Task] = deque()
+        self._known: dict[int, Entry] = {}
+        self._chunk = FIRST_CHUNK
+        self._failed_starts = 0
+
+    def entries(
+        self, items: Iterator[Item], stop: Callable[[], bool] = lambda: False
+    ) -> Iterator[list[tuple[Item, Entry]]]:
+        """Each item with its entry, in order, some at a time; ends early if ``stop`` says so.
+
+        Raises:
+            WorkerError: processes end before they begin to work.
+        """
+        numbered = enumerate(items)
+        waiting: deque[tuple[int, Item]] = deque()  # not yet given out in order
+        exhausted = False
+        while not stop():
+            exhausted = self._give(numbered, waiting, exhausted)
+            ready: list[tuple[Item, Entry]] = []
+            while waiting and waiting[0][0] in self._known:
+                number, item = waiting.popleft()
+                ready.append((item, self._known.pop(number)))
+            if ready:
+                yield ready
+            if exhausted and not waiting:
+                return
+            self._hear()
+            self._end_late()
+
+    def close(self) -> None:
+        """Ends all workers, at once."""
+        for worker in self._workers:
+            self._kill(worker)
+        self._workers.clear()
+
+    def _give(self, numbered: Iterator[tuple[int, Item]], waiting: deque[tuple[int, Item]], exhausted: bool) -> bool:
+        """Something to do for every idle worker; returns whether the items have come to their end."""
+        while len(self._workers) < self._jobs:
+            self._workers.append(self._start())
+        for worker in self._workers:
+            if worker.task is not None or not worker.started:
+                continue
+            if self._again:
+                self._hand(worker, self._again.popleft())
+            elif not exhausted and len(waiting) < WINDOW * self._jobs * self._chunk:
+                chunk = list(islice(numbered, self._chunk))
+                waiting.extend(chunk)
+                exhausted = not chunk
+                if chunk:
+                    self._hand(worker, _Task(chunk))
+        return exhausted
+
+    def _start(self) -> _Worker:
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(target=work, args=(theirs, self._look_at), daemon=True)
+        with _one_thread(), _without_interrupts(), _without_main():
+            process.start()
+        theirs.close()  # so that the end of the process is the end of the pipe
+        return _Worker(process, ours)
+
+    def _hand(self, worker: _Worker, task: _Task) -> None:
+        worker.task, worker.left = task, dict.fromkeys(range(len(task.numbered)))
+        worker.given = worker.heard = monotonic()
+        try:
+            worker.connection.send([item for _, item in task.numbered])
+        except (BrokenPipeError, ConnectionResetError):
+            self._bury(worker)
+
+    def _hear(self) -> None:
+        """What workers say; of those that say nothing any more, the end."""
+        by_connection = {worker.connection: worker for worker in self._workers}
+        for connection in wait(list(by_connection), timeout=_TICK):
+            worker = by_connection[connection]  # type: ignore[index]
+            try:
+                while worker.connection.poll():
+                    self._take(worker, worker.connection.recv())
+            except (EOFError, OSError):
+                self._bury(worker)
+
+    def _take(self, worker: _Worker, known: Known) -> None:
+        worker.heard, worker.started, self._failed_starts = monotonic(), True, 0
+        for place, entry in known:
+            if worker.task is not None and place in worker.left:
+                del worker.left[place]
+                self._known[worker.task.numbered[place][0]] = entry
+        if not known and worker.task is not None:
+            self._fit_chunk(len(worker.task.numbered), worker.heard - worker.given)
+            worker.task = None
+
+    def _fit_chunk(self, count: int, seconds: float) -> None:
+        """The next chunks' size, from what the last one took; never more than eight times as many at once."""
+        fitting = int(count * CHUNK_SECONDS / max(seconds, CHUNK_SECONDS / LARGEST_CHUNK))
+        self._chunk = max(1, min(fitting, 8 * self._chunk, LARGEST_CHUNK))
+
+    def _bury(self, worker: _Worker) -> None:
+        """A worker has died: what it had left is looked at again, one by one."""
+        if worker not in self._workers:
+            return
+        worker.process.join(_TICK)
+        how = _end_of(worker.process.exitcode)
+        self._kill(worker)
+        self._workers.remove(worker)
+        task, left = worker.task, worker.left
+        if task is None:
+            self._failed_starts += not worker.started
+            if self._failed_starts >= _FAILED_STARTS:
+                raise WorkerError(f"worker processes end before they begin to work ({how})")
+        elif len(task.numbered) == 1 and left:
+            number, item = task.numbered[0]
+            task.deaths += 1
+            if task.deaths >= DEATHS:
+                times = "twice" if DEATHS == 2 else f"{DEATHS} times"
+                self._fail(number, item, WorkerError(f"the process that looked at it died {times} ({how})"))
+            else:
+                self._again.append(_Task(task.numbered, task.deaths))
+        else:
+            self._again.extend(_Task([task.numbered[place]]) for place in left)
+
+    def _end_late(self) -> None:
+        """Kills workers that have said nothing for longer than one layout may take."""
+        if self._limit is None:
+            return
+        for worker in list(self._workers):
+            task = worker.task
+            if task is None or not worker.left or monotonic() - worker.heard <= self._limit:
+                continue
+            late, *others = worker.left  # a worker goes through its chunk in order
+            number, item = task.numbered[late]
+            self._fail(number, item, TimeLimitError(f"it took longer than the {self._limit:g} s it was given"))
+            self._again.extend(_Task([task.numbered[place]]) for place in others)
+            self._kill(worker)
+            self._workers.remove(worker)
+
+    def _fail(self, number: int, item: Item, error: FixtureDesignError) -> None:
+        self._known[number] = failure(item, error)
+
+    @staticmethod
+    def _kill(worker: _Worker) -> None:
+        worker.process.kill()
+        worker.process.join()
+        worker.connection.close()
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Processes started in here use one thread each, unless the user decided otherwise."""
+    added = [name for name in _ONE_THREAD if name not in os.environ]
+    os.environ.update(dict.fromkeys(added, "1"))
+    try:
+        yield
+    finally:
+        for name in added:
+            del os.environ[name]
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """Processes started in here do not import the script that runs: workers have no use for it, and it may be one that
+    cannot be imported (from a pipe), or that would start all over (without `if __name__ == "__main__"`).
+    """
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Processes started in here never hear of Ctrl-C, not even while they begin; this one hears of it afterwards."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _end_of(code: int | None) -> str:
+    """How a process ended, in words."""
+    if code is None or code >= 0:
+        return f"exit code {code}"
+    try:
+        return f"signal {signal.Signals(-code).name}"
+    except ValueError:
+        return f"signal {-code}"

@@ -1,0 +1,65 @@
+"""What exactly a record is about: a hash of the layout's text and of every file that it names."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from fixture_design.batch.item import Item
+from fixture_design.batch.reading import values_of
+from fixture_design.errors import InputError
+from fixture_design.geometry.input_files import with_meshes
+
+#: Files whose hashes are kept; a library of layouts names the same few again and again.
+_KEPT = 4096
+#: Keys whose values are names of files, as they stand in a layout's text: without one no file is looked for.
+_FILE_KEYS = (b"urdf", b"mesh", b"step", b"path")
+
+
+def input_hash(item: Item) -> str:
+    """SHA-256 of an item's text, its variant's number, and the files it names with their meshes."""
+    digest = hashlib.sha256(b"" if item.text is None else item.text)
+    if item.variant is not None:
+        digest.update(b"\0variant %d" % item.variant)
+    if item.text is not None and any(key in item.text for key in _FILE_KEYS):
+        for file in files_named(values_of(item), Path(item.source).parent):
+            digest.update(b"\0" + file_hash(file).encode())
+    return digest.hexdigest()
+
+
+def files_named(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
+    """The files that a layout's plain values name, whatever else is wrong with them."""
+    part = values.get("part")
+    named = [(part, key) for key in ("urdf", "mesh", "step")]
+    for key, inside in (("bodies", "urdf"), ("loads", "path")):
+        entries = values.get(key)
+        named += [(entry, inside) for entry in (entries if isinstance(entries, list) else [])]
+    for owner, key in named:
+        name = owner.get(key) if isinstance(owner, dict) else None
+        if isinstance(name, str):
+            yield folder / name
+
+
+def file_hash(file: Path) -> str:
+    """SHA-256 of a file and of the meshes that it names if it is a URDF; "missing" if it cannot be read."""
+    try:
+        status = file.stat()
+    except (OSError, ValueError):
+        return "missing"
+    return _hash_of(file, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=_KEPT)
+def _hash_of(file: Path, changed: int, size: int) -> str:
+    """``changed`` and ``size`` make a new version of the file another entry of the cache."""
+    try:
+        digest = hashlib.sha256()
+        for part in with_meshes(file):
+            with part.open("rb") as opened:
+                digest.update(hashlib.file_digest(opened, "sha256").digest())
+        return digest.hexdigest()
+    except (OSError, InputError):  # verifying the layout says what is wrong with it
+        return "missing"

@@ -1,0 +1,104 @@
+"""From items to the lines of the output: verdicts, or what went wrong."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any, Literal
+
+from fixture_design.batch.digest import input_hash
+from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.outcome import outcome_of, smallest_margin
+from fixture_design.batch.part_cache import PartCache
+from fixture_design.batch.reading import layout_of, values_of
+from fixture_design.errors import FixtureDesignError, InputError
+from fixture_design.io import dumps, error_record, verdict_to_dict
+from fixture_design.layout import Layout, Verdict
+from fixture_design.verification import contacts_of, verify
+from fixture_design.verification.found import FoundContacts
+
+Record = dict[str, Any]
+#: How much a record says: answers alone; with witnesses, margins and contacts; with the admissible sets as well.
+Detail = Literal["brief", "full", "sets"]
+
+#: Digits of seconds in `run.time`: microseconds.
+TIME_DIGITS = 6
+
+
+class WorkerError(FixtureDesignError):
+    """The process that looked at a layout died."""
+
+
+class TimeLimitError(FixtureDesignError):
+    """A layout took longer than it was given."""
+
+
+#: Gives the entry of a layout whose contacts are known and which was begun at that moment, sooner than `verify`; None
+#: where that has to look at it.
+Quick = Callable[[Item, Layout, FoundContacts, float], Entry | None]
+
+
+def entry_of(item: Item, parts: PartCache, detail: Detail, quick: Quick | None = None) -> Entry:
+    """The record of one layout; an error is a record too."""
+    try:
+        try:
+            return _entry(item, parts, detail, quick, placed=False)
+        except InputError:  # once more, for a message that says where
+            return _entry(item, parts, detail, quick, placed=True)
+    except InputError as error:
+        return failure(item, error.within(item.source))
+    except Exception as error:  # noqa: BLE001 - a fault of ours in one layout must not cost the others' verdicts
+        return failure(item, error)
+
+
+def _entry(item: Item, parts: PartCache, detail: Detail, quick: Quick | None, *, placed: bool) -> Entry:
+    start = perf_counter()
+    layout = layout_of(item, placed=placed)
+    found = contacts_of(layout, parts.geometry_of(layout))
+    if quick is not None and (entry := quick(item, layout, found, start)) is not None:
+        return entry
+    record = verdict_record(verify(layout, found=found, sets=detail == "sets"), detail)
+    record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, TIME_DIGITS)}
+    return entry_of_record(record)
+
+
+def verdict_record(verdict: Verdict, detail: Detail) -> Record:
+    """A verdict as `io` writes it; what was not looked for is null or not there."""
+    record: Record = verdict_to_dict(verdict, detail == "brief")
+    if detail == "full":
+        for group in record["groups"].values():
+            del group["bidirectional"]
+    return record
+
+
+def detail_of(record: Record) -> Detail:
+    """How much a record says."""
+    if "contacts" not in record:
+        return "brief"
+    return "sets" if any("bidirectional" in group for group in record["groups"].values()) else "full"
+
+
+def failure(item: Item, error: Exception) -> Entry:
+    """The record of a layout that has no verdict."""
+    name = values_of(item).get("name")
+    known = name if isinstance(name, str) and name else item.default_name
+    return entry_of_record(error_record(item.source, error, item.named(known)))
+
+
+def entry_of_record(record: Record) -> Entry:
+    """A record as it stands in the output, with what the summary wants to know of it."""
+    line = dumps(record).encode("utf-8", errors="backslashreplace") + b"\n"
+    return Entry(line, outcome_of(record), smallest_margin(record))
+
+
+def record_of(line: bytes) -> Record:
+    """What a line of the output says.
+
+    Raises:
+        ValueError: it is no JSON object.
+    """
+    record = json.loads(line)
+    if not isinstance(record, dict):
+        raise ValueError("the line is no JSON object")
+    return record

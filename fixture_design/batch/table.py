@@ -1,0 +1,94 @@
+"""Records as a flat table: CSV, or Parquet where polars or pandas is installed."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from fixture_design.batch.outcome import outcome_of, smallest_margin
+from fixture_design.batch.records import Record
+from fixture_design.batch.results import records_in
+from fixture_design.errors import FileFormatError, InputError
+from fixture_design.io.text_file import write_text
+
+#: Columns that every table has; then verdict and margin of every question of every group.
+_FIRST = ("name", "source", "outcome", "smallest_margin", "error_kind", "error_message", "input", "time")
+#: What may write Parquet, the first that is there.
+_PARQUET = ("polars", "pandas")
+
+
+def check_table(path: Path) -> None:
+    """Before anything long begins: whether such a table can be written.
+
+    Raises:
+        InputError: another ending than .csv and .parquet, or nothing is installed that writes Parquet.
+    """
+    if path.suffix.lower() not in (".csv", ".parquet"):
+        raise InputError(
+            "a table of this kind is not known", source=path, expected="a name that ends in .csv or .parquet"
+        )
+    if path.suffix.lower() == ".parquet" and not any(map(find_spec, _PARQUET)):
+        raise InputError("Parquet needs polars or pandas", source=path, expected="pip install polars, or a .csv")
+
+
+def write_table(output: Path, path: Path) -> None:
+    """Writes the records of an output file as a table with a row each.
+
+    Raises:
+        InputError: as `check_table`.  FileFormatError: it cannot be written.
+    """
+    check_table(path)
+    columns = _columns(records_in(output))
+    if path.suffix.lower() == ".csv":
+        text = io.StringIO()
+        writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(map(row_of, records_in(output)))
+        write_text(path, text.getvalue())
+        return
+    rows = [{**dict.fromkeys(columns), **row_of(record)} for record in records_in(output)]
+    by_column = {column: [row[column] for row in rows] for column in columns}
+    try:
+        _write_parquet(by_column, path)
+    except (OSError, ImportError) as cause:  # pandas needs pyarrow or fastparquet
+        raise FileFormatError(f"the table cannot be written: {cause}", source=path) from cause
+
+
+def _write_parquet(columns: dict[str, list[Any]], path: Path) -> None:
+    if find_spec("polars"):
+        import polars  # noqa: PLC0415 - whoever wants Parquet has it  # pyright: ignore[reportMissingImports]
+
+        polars.DataFrame(columns, strict=False).write_parquet(path)
+        return
+    import pandas  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
+
+    pandas.DataFrame(columns).to_parquet(path)
+
+
+def row_of(record: Record) -> dict[str, Any]:
+    """A record as one row: plain values by column."""
+    error, run = record.get("error", {}), record.get("run", {})
+    row = {
+        "name": record["name"], "source": record.get("source"), "outcome": outcome_of(record),
+        "smallest_margin": smallest_margin(record), "error_kind": error.get("kind"),
+        "error_message": error.get("message"), "input": run.get("input"), "time": run.get("time"),
+    }  # fmt: skip
+    for name, group in record.get("groups", {}).items():
+        for claim, finding in group.items():
+            if isinstance(finding, dict) and "verdict" in finding:
+                row[f"{name}.{claim}"] = finding["verdict"]
+                if "margin" in finding:
+                    row[f"{name}.{claim}.margin"] = finding["margin"]
+    return row
+
+
+def _columns(records: Iterable[Record]) -> list[str]:
+    """All columns, in the order they are met."""
+    columns = dict.fromkeys(_FIRST)
+    for record in records:
+        columns |= dict.fromkeys(row_of(record))
+    return list(columns)

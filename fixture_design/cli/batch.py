@@ -1,0 +1,147 @@
+"""`fixture-design batch PATH... -o OUT.jsonl`: thousands of layouts, records in order, resumed where it stopped."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fixture_design.cli.exit_codes import ExitCode, worst
+from fixture_design.cli.messages import say
+from fixture_design.errors import FileFormatError, InputError
+from fixture_design.io import dumps
+
+_CODES = {
+    "internal error": ExitCode.INTERNAL_ERROR,
+    "bad input": ExitCode.BAD_INPUT,
+    "no": ExitCode.FAILS,
+    "undecided": ExitCode.UNDECIDED,
+    "nothing required": ExitCode.HOLDS,
+    "yes": ExitCode.HOLDS,
+}
+
+
+def batch(
+    paths: Annotated[
+        list[Path],
+        typer.Argument(help="Layout files, .jsonl of layouts, folders, globs.", metavar="PATH...", readable=False),
+    ],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Records, one a line; gone on with if there.", metavar="OUT.jsonl")
+    ],
+    brief: Annotated[bool, typer.Option("--brief", help="Without witnesses, margins and contacts.")] = False,
+    sets: Annotated[bool, typer.Option("--sets", help="With the admissible sets, as verify has them; slow.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", min=1, help="Worker processes.", show_default="all cores")
+    ] = None,
+    limit: Annotated[
+        float | None, typer.Option("--limit", min=0.001, help="Seconds that one layout may take.", metavar="SECONDS")
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option("--cluster", help="Dask scheduler that runs it instead of this machine.", metavar="ADDRESS"),
+    ] = None,
+    report: Annotated[
+        Path | None, typer.Option("--report", help="Also write an HTML page about all records.", metavar="OUT.html")
+    ] = None,
+    table: Annotated[
+        Path | None, typer.Option("--table", help="Also write all records as a table.", metavar="OUT.csv|OUT.parquet")
+    ] = None,
+    against: Annotated[
+        Path | None, typer.Option("--against", help="Compare with an earlier output.", metavar="OLD.jsonl")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The summary as one JSON document on stdout.")] = False,
+) -> None:
+    """Verify thousands of layouts, in worker processes; a run that was stopped goes on where it was.
+
+    Exit code, the first that is true of some layout: 4 internal error, 2 bad input, 1 a requirement fails, 3
+    undecided; else 0; 130 if it was interrupted.
+    """
+    from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415
+    from fixture_design.batch.against import compare  # noqa: PLC0415 - after the arguments are known good
+    from fixture_design.batch.cluster import Cluster  # noqa: PLC0415
+    from fixture_design.batch.progress import Progress  # noqa: PLC0415
+    from fixture_design.batch.report import write_batch_report  # noqa: PLC0415
+    from fixture_design.batch.table import write_table  # noqa: PLC0415
+    from fixture_design.cli.batch_summary import print_summary  # noqa: PLC0415
+
+    detail = detail_wanted(brief, sets)
+    if cluster is not None and (jobs is not None or limit is not None):
+        raise InputError("--jobs and --limit are for this machine", expected="neither of them with --cluster")
+    # on a cluster all see the same files, but none has this folder
+    files = input_files([path.absolute() for path in paths] if cluster else paths, besides=output)
+    _check_others(output, files, report, table, against)
+    progress = Progress(total_share(files))
+    with _interrupts() as interrupted:
+        workers = local_workers(detail, jobs, limit) if cluster is None else Cluster(cluster, detail)
+        summary = run_batch(
+            files, output, workers,
+            detail=detail, watch=progress.add, ready=progress.resumed, stop=interrupted,
+        )  # fmt: skip
+    progress.close()
+    comparison = compare(output, against) if against is not None and not summary.interrupted else None
+    if as_json:
+        said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
+        typer.echo(dumps(said))
+    else:
+        print_summary(summary, comparison)
+    if report is not None:
+        write_batch_report(output, report, summary, comparison)
+    if table is not None:
+        write_table(output, table)
+    if summary.interrupted:
+        say(f"{summary.count} records are in {output}; the same command goes on from there")
+        raise typer.Exit(ExitCode.INTERRUPTED)
+    raise typer.Exit(worst(_CODES[outcome] for outcome in summary.outcomes))
+
+
+def _check_others(
+    output: Path, inputs: list[Path], report: Path | None, table: Path | None, against: Path | None
+) -> None:
+    """What would fail at the end fails before the beginning, and nothing that the user made is lost.
+
+    Raises:
+        InputError: a file is to be written that is something else too; the earlier output cannot be read.
+    """
+    from fixture_design.batch.results import records_in  # noqa: PLC0415
+    from fixture_design.batch.table import check_table  # noqa: PLC0415
+    from fixture_design.viewing import refuse_inputs  # noqa: PLC0415
+
+    read = [*inputs, *([against] if against else [])]
+    refuse_inputs(output, [against] if against else [])
+    for written in filter(None, (report, table)):
+        refuse_inputs(written, [*read, output])
+        if written.is_dir() or not written.absolute().parent.is_dir():
+            raise FileFormatError("the file cannot be written: no such folder, or a folder itself", source=written)
+    if table is not None:
+        check_table(table)
+    if against is not None:
+        next(records_in(against), None)
+
+
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], bool]]:
+    """In here Ctrl-C (and SIGTERM) only set what the function asks for; a second one ends the process."""
+    told: list[int] = []
+
+    def hear(number: int, frame: object) -> None:
+        if told:
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+        told.append(number)
+
+    try:
+        before = {number: signal.signal(number, hear) for number in (signal.SIGINT, signal.SIGTERM)}
+    except ValueError:  # not the main thread: signals are somebody else's
+        before = {}
+    try:
+        yield lambda: bool(told)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        sys.stderr.flush()

@@ -1,0 +1,333 @@
+"""What is looked at together gets the records that `verify` gives one by one."""
+
+import json
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fixture_design.batch.alike import Alike
+from fixture_design.batch.alike.plan import QUESTIONS
+from fixture_design.batch.alike.structure import cut, numbers_of, structure_of
+from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.items import items_of as items_in
+from fixture_design.batch.part_cache import PartCache
+from fixture_design.batch.reading import layout_of
+from fixture_design.batch.records import Detail, entry_of
+from fixture_design.contacts import Contact
+from fixture_design.layout import (
+    Answer,
+    Evidence,
+    Finding,
+    GroupVerdict,
+    Motion,
+    RequirementVerdict,
+    Singular,
+    Verdict,
+    Weights,
+)
+from fixture_design.verification import check, contacts_of
+from tests.batch.layouts import LAYOUT
+
+COUNT = 25
+REQUIRE = {"locators": ["deterministic", "strongly_accessible"], "all": ["form_closure", "force_closure"]}
+Make = Callable[[np.random.Generator], list[dict[str, object]]]
+
+
+def smooth(rng: np.random.Generator, count: int, plane: int, **keys: object) -> list[dict[str, object]]:
+    """Contacts around an ellipsoid, some of them opposite each other so that many close."""
+    directions = rng.normal(size=(count, plane))
+    directions[count // 2 :] = -directions[: count - count // 2] + 0.3 * rng.normal(size=directions[count // 2 :].shape)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    axes = np.array([0.05, 0.04, 0.03])[:plane]
+    points, normals = np.round(directions * axes, 6).tolist(), np.round(directions / axes, 4).tolist()
+    return [
+        {"name": f"C{k}", "role": "clamp" if k % 4 == 3 else "locator", "point": p, "normal": n} | keys
+        for k, (p, n) in enumerate(zip(points, normals, strict=True))
+    ]
+
+
+def boxed(rng: np.random.Generator, count: int) -> list[dict[str, object]]:
+    """Contacts on the faces of a box, at coordinates of a few digits: degenerate more often than not."""
+    contacts = []
+    for k in range(count):
+        axis, side = int(rng.integers(3)), int(rng.integers(2)) * 2 - 1
+        normal, point = [0, 0, 0], rng.integers(-3, 4, size=3).tolist()
+        normal[axis], point[axis] = side, 4 * side
+        contacts.append({"name": f"C{k}", "role": "locator", "point": point, "normal": normal})
+    return contacts
+
+
+def with_ors(rng: np.random.Generator) -> list[dict[str, object]]:
+    contacts = smooth(rng, 6, 2)
+    for contact in contacts[:3]:
+        normal = contact.pop("normal")
+        other = np.round(np.array(normal) + 8 * rng.normal(size=2), 3).tolist()
+        contact[("any_of", "all_of", "normals")[contacts.index(contact)]] = (
+            [[normal, other]] if contact is contacts[2] else [normal, other]
+        )
+    return contacts
+
+
+FAMILIES: dict[str, Make] = {
+    "smooth": lambda rng: smooth(rng, 12, 3),
+    "planar": lambda rng: smooth(rng, 5, 2),
+    "few": lambda rng: smooth(rng, 4, 3),
+    "friction": lambda rng: smooth(rng, 5, 3, friction=round(float(rng.uniform(0, 0.8)), 3)),
+    "planar friction": lambda rng: smooth(rng, 4, 2, friction=0.3),
+    "boxed": lambda rng: boxed(rng, 9),
+    "boxed planes": lambda rng: boxed(rng, 7),
+    "ors": with_ors,
+}
+
+
+def items_of(family: str, seed: int = 5, **keys: object) -> list[Item]:
+    rng = np.random.default_rng(seed)
+    space = "planar" if "planar" in family or family == "ors" else "spatial"
+    texts = []
+    for number in range(COUNT):
+        head = {"schema": LAYOUT, "name": f"n{number}", "space": space, "require": REQUIRE}
+        texts.append(json.dumps({**head, "contacts": FAMILIES[family](rng), **keys}))
+    return [Item(f"lib.jsonl:{k}", text.encode(), k) for k, text in enumerate(texts, start=1)]
+
+
+def record(line: bytes) -> dict:
+    found = json.loads(line)
+    found.get("run", {}).pop("time", None)
+    return found
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_brief_records_are_those_of_verify(family: str) -> None:
+    items = items_of(family)
+    together = Alike("brief").entries(items)
+    assert len(together) > COUNT // 3
+    answers = Counter()
+    for place, entry in together:
+        expected = entry_of(items[place], PartCache(), "brief")
+        assert record(entry.line) == record(expected.line)
+        assert list(record(entry.line)) == list(record(expected.line))
+        assert entry.outcome == expected.outcome
+        answers[record(entry.line)["groups"]["all"]["force_closure"]["verdict"]] += 1
+    if family in {"smooth", "planar", "friction", "ors"}:
+        assert len(answers) == 2  # a family that always says the same would test little
+
+
+def test_stages_units_and_numbers_of_any_form() -> None:
+    stages = [
+        {"name": "a", "active": ["C0", "clamp"], "gravity": True, "require": ["accessible"]},
+        {"name": "b", "active": ["support"]},
+        {"name": "c", "active": ["support"], "require": ["form_closure"]},
+    ]
+    for units in ("m", "mm", "in"):
+        items = items_of("smooth", stages=stages, units=units, friction=1e-1)[:6]
+        together = Alike("brief").entries(items)
+        assert len(together) >= 3
+        for place, entry in together:
+            assert record(entry.line) == record(entry_of(items[place], PartCache(), "brief").line)
+
+
+@pytest.mark.parametrize("family", ["smooth", "planar", "few", "boxed", "boxed planes"])
+def test_full_records_have_the_margins_of_verify_and_evidence_that_proves(family: str) -> None:
+    items = items_of(family)
+    together = Alike("full").entries(items)
+    assert len(together) > COUNT // 3
+    for place, entry in together:
+        found, expected = record(entry.line), entry_of(items[place], PartCache(), "full")
+        compare(found, record(expected.line))
+        assert entry.margin == pytest.approx(expected.margin, rel=1e-7, abs=1e-10)
+        layout = layout_of(items[place])
+        assert check(verdict_from(found, layout.contacts)) == []
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+@pytest.mark.parametrize("units", ["m", "mm"])
+def test_variants_of_a_sweep_are_those_of_verify(tmp_path: Path, detail: Detail, units: str) -> None:
+    contacts = smooth(np.random.default_rng(2), 8, 3)
+    sweep = {"at": 0.02, "samples": 30, "seed": 1}
+    layout = {"schema": LAYOUT, "units": units, "contacts": contacts, "require": REQUIRE, "sweep": sweep}
+    (tmp_path / "x.json").write_text(json.dumps(layout))
+    items = list(items_in([tmp_path / "x.json"]))
+    together = Alike(detail).entries(items)
+    assert len(together) == 30
+    for place, entry in together:
+        expected = entry_of(items[place], PartCache(), detail)
+        found = record(entry.line)
+        assert found["name"] == f"x[{place}]"
+        if detail == "brief":
+            assert found == record(expected.line)
+        else:
+            compare(found, record(expected.line))
+
+
+BOX = [(0.1, 0.0, 0.0), (-0.1, 0.0, 0.0), (0.0, 0.08, 0.0), (0.0, -0.08, 0.0), (0.0, 0.0, 0.05), (0.0, 0.0, -0.05)]
+
+
+def on_box(tmp_path: Path, rng: np.random.Generator, **keys: object) -> dict[str, object]:
+    """Balls on the faces of a box, a few of them on its edges and corners."""
+    (tmp_path / "box.obj").write_text(OBJ)
+    half, elements = np.array([0.1, 0.08, 0.05]), []
+    for k in range(9):
+        face = BOX[(k if k < 6 else int(rng.integers(6)))]
+        inside = np.where(rng.random(3) < 0.05, half, rng.uniform(-0.8, 0.8, 3) * half)
+        at = np.where(np.abs(face) > 0, face, np.round(inside, 5))
+        elements.append({"name": f"E{k}", "role": "locator" if k < 7 else "clamp", "at": at.tolist()})
+    stages = [{"name": "s", "active": ["clamp", "E1"], "require": ["accessible"]}]
+    return {"schema": LAYOUT, "part": {"mesh": "box.obj"}, "elements": elements, "stages": stages, **keys}
+
+
+OBJ = "".join(f"v {x * 0.1} {y * 0.08} {z * 0.05}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)) + "".join(
+    f"f {a} {b} {c}\nf {a} {c} {d}\n"
+    for a, b, c, d in ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+)
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_layouts_on_parts_are_decided_alike(tmp_path: Path, detail: Detail, friction: float) -> None:
+    rng, parts, alike, quick = np.random.default_rng(8), PartCache(), Alike(detail), 0
+
+    def counted(*arguments: Any) -> Entry | None:
+        nonlocal quick
+        entry = alike.entry_of_found(*arguments)
+        quick += entry is not None
+        return entry
+
+    for number in range(10):
+        layout = on_box(tmp_path, rng, name=f"b{number}", require=REQUIRE, friction=friction)
+        item, before = Item(str(tmp_path / f"lib.jsonl:{number}"), json.dumps(layout).encode(), number), quick
+        found, expected = (record(entry_of(item, parts, detail, q).line) for q in (counted, None))
+        if detail == "brief":
+            assert found == expected
+            continue
+        compare(found, expected)
+        if quick > before:
+            assert check(verdict_from(found, contacts_of(layout_of(item)).contacts)) == []
+    assert quick > 4 or (detail == "full" and friction > 0)
+
+
+def compare(found: dict, expected: dict) -> None:
+    """Everything but the witnesses is the same; these are of the same kind."""
+    for name, group in expected["groups"].items():
+        assert list(found["groups"][name]) == list(group)
+        for claim, finding in group.items():
+            if not isinstance(finding, dict):
+                continue
+            other = found["groups"][name][claim]
+            assert list(other) == list(finding)
+            assert other["verdict"] == finding["verdict"]
+            assert other["margin"] == pytest.approx(finding["margin"], rel=1e-7, abs=1e-10)
+            assert list(other["witness"]) == list(finding["witness"])
+            assert other["witness"].get("rank") == finding["witness"].get("rank")
+    rest = [{key: value for key, value in record.items() if key != "groups"} for record in (found, expected)]
+    assert rest[0] == rest[1]
+
+
+def verdict_from(record: dict, contacts: tuple[Contact, ...]) -> Verdict:
+    """The verdict that a full record tells, for the checker."""
+    groups = {
+        name: GroupVerdict(name, tuple(group["contacts"]), {c: finding_from(group[c]) for c in QUESTIONS})
+        for name, group in record["groups"].items()
+    }
+    rows = tuple(
+        RequirementVerdict(row["group"], row["require"], row["verdict"] and Answer(row["verdict"]))
+        for row in record["requirements"]
+    )
+    satisfied = record["satisfied"] and Answer(record["satisfied"])
+    scale = np.array(record["run"]["reference"]), record["run"]["length"]
+    return Verdict(
+        name=record["name"], source=None, space=record["space"], satisfied=satisfied, groups=groups,
+        contacts=contacts, requirements=rows, notes=(), reference=scale[0], length=scale[1], run={},
+    )  # fmt: skip
+
+
+def finding_from(data: dict) -> Finding:
+    if data["verdict"] is None:
+        return Finding(None)
+    witness, residual = data["witness"], data["residual"]
+    evidence: Evidence
+    if "rank" in witness:
+        motion = np.array(witness["motion"]) if "motion" in witness else None
+        evidence = Singular(witness["rank"], motion, ((),), residual)
+    elif "motion" in witness:
+        evidence = Motion(np.array(witness["motion"]), residual)
+    else:
+        weights = {name: tuple(values) for name, values in witness["weights"].items()}
+        evidence = (Weights(weights, tuple(map(tuple, witness["basis"])), (), residual),)
+    return Finding(Answer(data["verdict"]), data["margin"], evidence, residual)
+
+
+LINE = b'{"name": "a", "contacts": [{"name": "C 1, 2", "point": [1, -2.5e-3, 0]}]}'
+CHANGED = [
+    LINE.replace(b"1, -2", b"01, -2"),
+    LINE.replace(b"1, -2", b"+1, -2"),
+    LINE.replace(b"1, -2", b"1., -2"),
+    LINE.replace(b"1, -2", b"1 -2"),
+    LINE.replace(b"1, -2", b"1,  -2"),
+    LINE.replace(b"[1, ", b"1[, "),
+    LINE.replace(b"C 1, 2", b"C 1, 3"),
+    LINE.replace(b"C 1, 2", b"C 1\\u002c 2"),
+    LINE.replace(b'"a"', b'""'),
+    LINE.replace(b'"a"', b'"\xc3\xa9"'),
+    LINE.replace(b'"a"', b'"a\t"'),
+    LINE.replace(b'"name": "a"', b'"nam": "a"'),
+    LINE.replace(b"}]}", b"}]"),
+    LINE.replace(b"0]", b"true]"),
+    LINE.replace(b"0]", b"NaN]"),
+]
+
+
+def test_a_line_is_alike_only_if_nothing_but_numbers_and_name_differ() -> None:
+    first = cut(LINE)
+    assert first is not None
+    structure = structure_of(first)
+    assert structure is not None
+    assert structure.paths == tuple(("contacts", 0, "point", k) for k in range(3))
+    same = cut(LINE.replace(b'"a"', b'"b"').replace(b"-2.5e-3", b"7"))
+    assert same is not None
+    assert structure.name_in(same.quoted) == "b"
+    assert structure.filled % same.numbers == same.outside
+    assert numbers_of(same) == [1, 7, 0]
+    for text in CHANGED:
+        other = cut(text)
+        if other is None or numbers_of(other) is None or len(other.numbers) != 3:
+            continue
+        assert structure.name_in(other.quoted) is None or structure.filled % other.numbers != other.outside, text
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace(b'"point": [', b'"point": [1e999, ', 1),
+        lambda text: text.replace(b'"normal": [', b'"normal": [0.0, 0.0, 0.0], "x": [', 1),
+        lambda text: text.replace(b'"role": "locator"', b'"role": "locater"', 1),
+        lambda text: text[:-1],
+        lambda text: text.replace(b'"n3"', b'"n3", "name": "twice"'),
+        lambda text: text.replace(b'"friction": 0.1', b'"friction": -0.1'),
+        lambda text: text.replace(b'"friction": 0.1', b'"friction": 1' + b"0" * 400),
+    ],
+)
+def test_a_bad_layout_among_good_ones_is_left_to_verify(change: Callable[[bytes], bytes]) -> None:
+    items = items_of("smooth", friction=0.1)
+    items[3] = items[3]._replace(text=change(items[3].text or b""))
+    assert items[3].text != items_of("smooth", friction=0.1)[3].text
+    together = dict(Alike("brief").entries(items))
+    assert 3 not in together
+    assert len(together) > COUNT // 3 or b"0" * 400 in items[3].text  # a number no float holds stops its pile
+
+
+def test_zero_normals_and_far_points_are_left_to_verify() -> None:
+    items = items_of("smooth")
+    layouts = [json.loads(item.text or b"") for item in items]
+    layouts[1]["contacts"][0]["normal"] = [0, 0, 0]
+    layouts[2]["contacts"][0]["point"] = [1e12, 0, 0]
+    layouts[4]["contacts"][1] = {**layouts[4]["contacts"][0], "name": "C1"}
+    for contact in layouts[5]["contacts"]:
+        contact["point"] = [x + 1e5 for x in contact["point"]]
+    items = [item._replace(text=json.dumps(layout).encode()) for item, layout in zip(items, layouts, strict=True)]
+    together = dict(Alike("brief").entries(items))
+    assert not {1, 2, 4, 5} & set(together)
+    assert 6 in together

@@ -1,0 +1,38 @@
+"""`verify_batch` from scripts of every kind."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import fixture_design as fd
+from fixture_design.errors import FileFormatError, InputError
+from tests.batch.layouts import HOLDS, lines, planar
+
+ROOT = Path(__file__).resolve().parents[2]
+SCRIPT = "import fixture_design as fd\nprint([r['satisfied'] for r in fd.verify_batch('lib.jsonl', jobs=1)])\n"
+
+
+@pytest.mark.parametrize("piped", [True, False])
+def test_scripts_need_no_guard(tmp_path: Path, piped: bool) -> None:
+    lines(tmp_path / "lib.jsonl", [planar("a", require=HOLDS), "{", planar("b")][::2])
+    (tmp_path / "script.py").write_text(SCRIPT)
+    ran = subprocess.run(
+        [sys.executable, "-" if piped else "script.py"], input=SCRIPT if piped else None, capture_output=True,
+        text=True, cwd=tmp_path, env={"PYTHONPATH": str(ROOT)}, check=False,
+    )  # fmt: skip
+    assert (ran.stdout, ran.stderr) == ("['yes', None]\n", "")
+
+
+def test_wrong_paths_are_told_before_anything_is_read() -> None:
+    with pytest.raises(FileFormatError, match="no such file"):
+        fd.verify_batch("nowhere.yaml")
+    with pytest.raises(InputError, match="one of brief and sets"):
+        fd.verify_batch(__file__, brief=True, sets=True)
+
+
+def test_leaving_early_ends_the_workers(tmp_path: Path) -> None:
+    records = fd.verify_batch(lines(tmp_path / "lib.jsonl", [planar(str(n)) for n in range(100)]), jobs=1)
+    assert next(records)["name"] == "0"
+    records.close()

@@ -1,0 +1,54 @@
+"""Counts, worst cases and confidence intervals."""
+
+import pytest
+from scipy import stats
+
+from fixture_design.batch.interval import wilson_interval
+from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.outcome import outcome_of, smallest_margin
+from fixture_design.batch.summary import Summary
+
+
+@pytest.mark.parametrize(("successes", "count"), [(0, 1), (1, 1), (0, 50), (50, 50), (7, 9), (970, 1000)])
+def test_wilson_agrees_with_scipy(successes: int, count: int) -> None:
+    found = stats.binomtest(successes, count).proportion_ci(0.95, "wilson")
+    assert wilson_interval(successes, count) == pytest.approx((found.low, found.high), abs=1e-12)
+
+
+def test_wilson_of_nothing() -> None:
+    assert wilson_interval(0, 0) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("record", "outcome"),
+    [
+        ({"satisfied": "yes"}, "yes"),
+        ({"satisfied": None}, "nothing required"),
+        ({"satisfied": "undecided"}, "undecided"),
+        ({"error": {"kind": "ContentError"}}, "bad input"),
+        ({"error": {"kind": "PenetrationError"}}, "bad input"),
+        ({"error": {"kind": "ValueError"}}, "internal error"),
+        ({"error": {"kind": "WorkerError"}}, "internal error"),
+    ],
+)
+def test_outcomes(record: dict, outcome: str) -> None:
+    assert outcome_of(record) == outcome
+
+
+def test_the_smallest_margin_is_that_of_what_is_required() -> None:
+    record = {
+        "groups": {"all": {"form_closure": {"margin": 0.1}, "accessible": {"margin": -0.1}, "seated": {}}},
+        "requirements": [{"group": "all", "require": "form_closure"}, {"group": "all", "require": "seated"}],
+    }
+    assert smallest_margin(record) == 0.1
+
+
+def test_the_worst_variant_has_the_worst_outcome_then_the_smallest_margin() -> None:
+    summary = Summary()
+    for number, (outcome, margin) in enumerate([("yes", 0.1), ("yes", 0.01), ("no", 0.5), ("no", -0.2), ("yes", 0.0)]):
+        summary.add(Item("x", b"", variant=number, sampled=True), Entry(b'{"name": "x[%d]"}' % number, outcome, margin))
+    (sweep,) = summary.as_dict()["sweeps"]
+    assert (sweep["count"], sweep["holds"], sweep["fraction"]) == (5, 3, 0.6)
+    assert sweep["worst"] == {"name": "x[3]", "outcome": "no", "margin": -0.2}
+    assert sweep["interval"][0] < 0.6 < sweep["interval"][1]
+    assert summary.as_dict()["outcomes"]["yes"] == 3
