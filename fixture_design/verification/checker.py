@@ -14,8 +14,9 @@ from typing import Literal
 import numpy as np
 
 from fixture_design.contacts import Contact, Scale
-from fixture_design.layout import Answer, Finding, GroupVerdict, Motion, Singular, Verdict, Weights
+from fixture_design.layout import Answer, Finding, GroupVerdict, Layout, Motion, Singular, Verdict, Weights
 from fixture_design.tolerances import DEFAULT
+from fixture_design.verification.given import given_faults
 from fixture_design.verification.proofs import Case, Pyramids, coverage_fault, motion_fault, rank_fault, weights_fault
 from fixture_design.verification.residuals import residual_fault
 from fixture_design.verification.rules import SLIP_RULES, rule_fault
@@ -53,10 +54,14 @@ CLAIMS = tuple(dict.fromkeys(claim for claim, _ in _PROOFS))
 _WITH_CLEARANCE_OPEN = ("accessible", "strongly_accessible")
 
 
-def check(verdict: Verdict) -> list[str]:
+def check(verdict: Verdict, layout: Layout | None = None) -> list[str]:
     """Everything that is wrong with a verdict; an empty list confirms it.
 
     Undecided answers claim nothing and need no proof.
+
+    Args:
+        layout: what the verdict is about: its weight, loads, preloads and features must be those of the evidence. The
+            contacts are taken as the verdict has them.
     """
     contacts = {contact.name: contact for contact in verdict.contacts}
     problems = _repeated("the verdict", [contact.name for contact in verdict.contacts])
@@ -69,7 +74,7 @@ def check(verdict: Verdict) -> list[str]:
         faults = _member_faults(name, group, contacts)
         problems += faults or check_group(group, [contacts[member] for member in group.contacts], report)
         problems += [f"{name}: there is no finding for {claim}" for claim in CLAIMS if claim not in group.findings]
-    return problems + _requirement_faults(verdict)
+    return problems + _requirement_faults(verdict) + ([] if layout is None else given_faults(verdict, layout))
 
 
 def _member_faults(name: str, group: GroupVerdict, contacts: Mapping[str, Contact]) -> list[str]:
