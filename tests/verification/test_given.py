@@ -40,7 +40,7 @@ def test_what_the_layout_says_is_confirmed(bracket: tuple[Layout, Verdict]) -> N
         ("clamped", "holds_loads", lambda use: {"preloads": {}}, "preloads"),
         ("clamped", "seated", lambda use: {"preloads": {"K2": 1.0}}, "preloads"),
         ("placed", "accurate", lambda use: {"features": use.features[:1]}, "features"),
-        ("placed", "accurate", lambda use: {"features": [replace(f, tolerance=1.0) for f in use.features]}, "features"),
+        ("placed", "accurate", lambda use: {"features": (replace(use.features[0], tolerance=1.0),)}, "features"),
         ("placed", "accurate", lambda use: {"errors": dict.fromkeys(use.errors, 0.0)}, "below its tolerance"),
     ],
 )  # fmt: skip
