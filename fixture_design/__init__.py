@@ -11,7 +11,7 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > io > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
+    cli > io > assembly > verification > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
@@ -27,6 +27,7 @@ The folders state the theory, and each imports only from those to its right::
   bodies all there are (`geometry.bodies`), each from the tangent cones of both sides (`contacts.polyhedral`); the part
   posed among bodies, candidate points on its surface, sliding over it.
 * `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.
+* `assembly`: which contacts two parts can have and which can follow which: the contact state graph.
 * `io`: files. `cli`: the command line.
 
 How an answer is decided
@@ -54,35 +55,50 @@ from typing import TYPE_CHECKING
 from fixture_design.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from fixture_design.assembly import Assembly, ContactStateGraph, state_at, state_graph
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
-    from fixture_design.io import read_layout, write_layout
+    from fixture_design.io import read_assembly, read_graph, read_layout, write_graph, write_layout
     from fixture_design.layout import Layout, Verdict
     from fixture_design.verification import check, contacts_of, verify
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
+    "Assembly": "assembly",
     "Contact": "contacts",
+    "ContactStateGraph": "assembly",
     "Layout": "layout",
     "PolyhedralConvexCone": "cones",
     "Verdict": "layout",
     "check": "verification",
     "contacts_of": "verification",
+    "read_assembly": "io",
+    "read_graph": "io",
     "read_layout": "io",
+    "state_at": "assembly",
+    "state_graph": "assembly",
     "verify": "verification",
+    "write_graph": "io",
     "write_layout": "io",
 }
 
 __all__ = [
+    "Assembly",
     "Contact",
+    "ContactStateGraph",
     "Layout",
     "PolyhedralConvexCone",
     "Verdict",
     "__version__",
     "check",
     "contacts_of",
+    "read_assembly",
+    "read_graph",
     "read_layout",
+    "state_at",
+    "state_graph",
     "verify",
+    "write_graph",
     "write_layout",
 ]
 

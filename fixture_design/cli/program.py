@@ -13,6 +13,7 @@ from typer.exceptions import TyperException
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
 from fixture_design.cli.schema import schema
+from fixture_design.cli.states import states
 from fixture_design.cli.verify import verify
 from fixture_design.cones.kernel import NAME as KERNEL
 from fixture_design.errors import InputError
@@ -26,6 +27,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(verify)
+app.command()(states)
 app.command()(schema)
 
 

@@ -1,6 +1,8 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
+from fixture_design.io.assembly_file import assembly_from_data, read_assembly
 from fixture_design.io.documents import Document, read_document
+from fixture_design.io.graph_file import graph_to_dict, read_graph, write_graph, write_graphml
 from fixture_design.io.json_writer import dumps
 from fixture_design.io.layout_file import layout_from_data, read_layout, write_layout
 from fixture_design.io.places import Place
@@ -12,13 +14,19 @@ __all__ = [
     "ContentError",
     "Document",
     "Place",
+    "assembly_from_data",
     "dumps",
     "error_record",
+    "graph_to_dict",
     "json_schema",
     "layout_from_data",
+    "read_assembly",
     "read_document",
+    "read_graph",
     "read_layout",
     "schema_names",
     "verdict_to_dict",
+    "write_graph",
+    "write_graphml",
     "write_layout",
 ]

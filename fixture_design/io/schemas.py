@@ -11,7 +11,7 @@ from fixture_design.io.records import LayoutRecord
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-_KINDS = ("layout", "verdict")
+_KINDS = ("assembly", "layout", "verdict")
 
 
 def schema_names() -> list[str]:
@@ -20,7 +20,7 @@ def schema_names() -> list[str]:
 
 
 def json_schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of a kind of file: "layout" or "verdict".
+    """The JSON Schema of a kind of file: "assembly", "layout" or "verdict".
 
     A schema tells keys, types and ranges; what depends on several keys (numbers of coordinates, names) only reading
     a file tells.
@@ -31,7 +31,7 @@ def json_schema(name: str) -> dict[str, Any]:
     if name not in _KINDS:
         raise UnknownNameError("file kind", name, _KINDS)
     schema = TypeAdapter(_record(name)).json_schema(by_alias=True)
-    if name == "layout":
+    if name != "verdict":
         schema = _without_nulls(schema)
     return {"$schema": _DIALECT, "$id": f"fixture_design/{name}/1", "title": f"fixture_design/{name}/1"} | {
         key: value for key, value in schema.items() if key != "title"
@@ -42,6 +42,10 @@ def _record(name: str) -> Any:
     """The classes that describe a kind; those of verdicts only describe, so they are built only here."""
     if name == "layout":
         return LayoutRecord
+    if name == "assembly":
+        from fixture_design.io.assembly_records import AssemblyRecord  # noqa: PLC0415 - only where asked for
+
+        return AssemblyRecord
     from fixture_design.io.verdict_schema import FailureRecord, VerdictRecord  # noqa: PLC0415 - 20 ms of any start
 
     return VerdictRecord | FailureRecord
