@@ -16,10 +16,10 @@ from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import MOST_SIGNS, contact_modes
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, joined, sort_configurations, state_of
+from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, state_of
 from fixture_design.assembly.tracing import trace
 from fixture_design.errors import UnsupportedError
-from fixture_design.tolerances import TOUCHING
+from fixture_design.tolerances import APART, TOUCHING
 
 #: Random directions that are traced from a sample, besides those along the axes.
 _DIRECTIONS = 6
@@ -31,12 +31,32 @@ _MOST_GENERATIONS = 40
 def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[str], None] = lambda _: None) -> None:
     """Goes on from all samples until nothing new appears: no new state, and no room for more samples."""
     fresh = joined(list(known.samples.values()))
+    seen: set[State] = set()
     for _ in range(_MOST_GENERATIONS):
-        if not len(fresh):
+        start = joined([fresh, _aligned(known, seen)])
+        if not len(start):
             return
-        found = [loosen(known, fresh), tighten(known, fresh, rng), aim(known.geometry, fresh)]
+        found = [loosen(known, start), tighten(known, start, rng), aim(known.geometry, start)]
         fresh, _ = known.add(joined(found))
         progress(f"{len(known.samples)} states, {len(known.transitions)} transitions")
+
+
+def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
+    """Configurations of states with two apices in one point where a facet of one part is along one of the other.
+
+    Only there do such states border on those in which these facets slide along each other; elsewhere every contact of a
+    state may be left alone, if their equations are independent.
+    """
+    geometry = known.geometry
+    found = []
+    for state in known.samples.keys() - seen:
+        samples = known.samples[state]
+        if geometry.coincident(samples.q[:1], APART * geometry.size)[0]:
+            turned = geometry.aligned(samples.q)
+            pairs = np.flatnonzero(samples.touching[0])
+            found.append(onto(geometry, turned, np.repeat(pairs[None], len(turned), axis=0)))
+    seen.update(known.samples)
+    return joined(found) if found else next(iter(known.samples.values()))[np.zeros(0, dtype=int)]
 
 
 def loosen(known: KnownStates, start: Sorted) -> Sorted:

@@ -78,6 +78,10 @@ class ContactGeometry(Protocol):
         """The displacements (n, d) that move ``start`` to ``end``."""
         ...
 
+    def aligned(self, q: np.ndarray) -> np.ndarray:
+        """Configurations turned so that a facet of one part is parallel to one of the other, all for each of q."""
+        ...
+
     def canonical(self, q: np.ndarray) -> np.ndarray:
         """The same configurations with their angles in the usual range."""
         ...

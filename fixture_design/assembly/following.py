@@ -17,8 +17,8 @@ from fixture_design.assembly.least_squares import solved
 from fixture_design.assembly.sorting import Sorted, joined, sort_configurations
 from fixture_design.tolerances import SOLVED
 
-#: Lengths of a motion, relative to the longest, the shortest first; the first few must agree.
-_SHARES = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)
+#: Lengths of a motion, relative to the longest, the shortest first. The first few that tell what touches must agree.
+_SHARES = (0.003, 0.03, 0.1, 0.3, 1.0)
 _MUST_AGREE = 3
 
 #: The longest motion: this share of the way to the next contact, and no more than this share of the radius [-].
@@ -54,23 +54,21 @@ def follow(geometry: ContactGeometry, q: np.ndarray, displacements: np.ndarray, 
     if not len(q):
         return Followed(np.zeros(0, dtype=int), sort_configurations(geometry, q))
     longest = _longest(geometry, q, displacements)
-    rows = np.arange(len(q))
-    ends = first = _moved(geometry, q, displacements, kept, _SHARES[0] * longest)
-    rows = rows[first.clear]
-    first = ends = first[first.clear]
-    going = np.ones(len(rows), dtype=bool)
-    for k, share in enumerate(_SHARES[1:], start=2):
-        way = _moved(geometry, q[rows], displacements[rows], kept[rows], share * longest[rows])
-        going &= way.clear & (way.touching == first.touching).all(axis=1)
-        ends = _replaced(ends, way, going)
-        if k == _MUST_AGREE:
-            rows, first, ends, going = rows[going], first[going], ends[going], going[going]
-    return Followed(rows, ends)
-
-
-def _replaced(old: Sorted, new: Sorted, where: Mask) -> Sorted:
-    order = np.where(where, np.arange(len(old)) + len(old), np.arange(len(old)))
-    return joined([old, new])[order]
+    ways = [_moved(geometry, q, displacements, kept, share * longest) for share in _SHARES]
+    # the shortest lengths may be too short to tell what touches; what they say is not wrong, but nothing
+    silent = np.logical_and.accumulate([way.admissible & ~way.clear for way in ways])
+    first = silent.sum(axis=0)
+    agreeing, last = np.zeros(len(q), dtype=int), np.zeros(len(q), dtype=int)
+    going = np.ones(len(q), dtype=bool)
+    patterns = np.array([way.touching for way in ways])
+    for k, way in enumerate(ways):
+        begins = np.minimum(first, len(ways) - 1)
+        same = way.clear & (way.touching == patterns[begins, np.arange(len(q))]).all(axis=1)
+        going &= same | (k < first)
+        agreeing += going & same
+        last[going & same] = k
+    rows = np.flatnonzero(agreeing >= _MUST_AGREE)
+    return Followed(rows, joined(ways)[last[rows] * len(q) + rows])
 
 
 def _longest(geometry: ContactGeometry, q: np.ndarray, displacements: np.ndarray) -> np.ndarray:

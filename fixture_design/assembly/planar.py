@@ -95,6 +95,15 @@ class PlanarGeometry:
             difference[:, 2] = _wrapped(difference[:, 2])
         return difference
 
+    def aligned(self, q: np.ndarray) -> np.ndarray:
+        if self.region.turning == "fixed":
+            return q[:0]
+        mine, theirs = (np.arctan2(side.tangents[:, 1], side.tangents[:, 0]) for side in (self.moving, self.fixed))
+        angles = np.unique(np.round(_wrapped(theirs[None] + np.pi - mine[:, None]), _ANGLE_DIGITS))
+        turned = np.repeat(q, len(angles), axis=0)
+        turned[:, 2] = np.tile(angles, len(q))
+        return turned
+
     def canonical(self, q: np.ndarray) -> np.ndarray:
         if self.region.turning != "free":
             return q
@@ -123,6 +132,10 @@ class PlanarGeometry:
         mine = np.where(apex_moves, self.pairs.apex_rows, self.pairs.facet_rows + counts[0])
         theirs = np.where(apex_moves, self.pairs.facet_rows + counts[1], self.pairs.apex_rows)
         return overlapping(sides[0][np.ix_(mine, mine)], sides[1][np.ix_(theirs, theirs)], TOUCHING * self.size)
+
+
+#: Digits to which angles of edges are compared, so that each is tried once.
+_ANGLE_DIGITS = 14
 
 
 def _feature_intervals(side: PlanarFeatures) -> np.ndarray:
