@@ -24,6 +24,9 @@ from fixture_design.tolerances import APART, TOUCHING
 #: Random directions that are traced from a sample, besides those along the axes.
 _DIRECTIONS = 6
 
+#: Digits to which configurations are compared, so that each is followed once.
+_SAME_DIGITS = 7
+
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
 
@@ -54,7 +57,9 @@ def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
         if geometry.coincident(samples.q[:1], APART * geometry.size)[0]:
             turned = geometry.aligned(samples.q)
             pairs = np.flatnonzero(samples.touching[0])
-            found.append(onto(geometry, turned, np.repeat(pairs[None], len(turned), axis=0)))
+            found.append(onto(geometry, turned, np.repeat(pairs[None], len(turned), axis=0), turning=False))
+            _, first = np.unique(np.round(found[-1].q, _SAME_DIGITS), axis=0, return_index=True)
+            found[-1] = found[-1][first]
     seen.update(known.samples)
     return joined(found) if found else next(iter(known.samples.values()))[np.zeros(0, dtype=int)]
 
@@ -107,6 +112,8 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
     everything = np.arange(len(geometry.names))[None]
     vectors = geometry.equations(start.q, everything).face_vectors / weights(geometry)
     ends = geometry.at_apices(start.q, TOUCHING * geometry.size)
+    turns = np.zeros(geometry.dimension, dtype=bool)
+    turns[geometry.turns] = True
     rows: list[int] = []
     displacements: list[np.ndarray] = []
     kept: list[np.ndarray] = []
@@ -117,7 +124,7 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         if ends[k, pairs].sum() > MOST_SIGNS:
             state = ", ".join(state_of(geometry, touching))
             raise UnsupportedError(f"more than {MOST_SIGNS} contacts at ends of facets at once: {state}")
-        for mode in contact_modes(vectors[k, pairs], ends[k, pairs], geometry.free):
+        for mode in contact_modes(vectors[k, pairs], ends[k, pairs], geometry.free, turns):
             rows.append(k)
             displacements.append(mode.displacement)
             kept.append(pairs[mode.kept])

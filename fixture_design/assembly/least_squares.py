@@ -13,6 +13,9 @@ _MOST_STEPS = 40
 #: Largest angle of a step [rad]: only in the angle are the equations not linear.
 _LARGEST_ANGLE = 0.5
 
+#: The share of `SOLVED` at which the steps end [-]: the last one costs little and leaves rounding only.
+_ENOUGH = 1e-2
+
 #: Damping of a step, relative to the squared distance that is left [-]: vanishes fast enough to converge quadratically.
 _DAMPING = 0.1
 
@@ -21,7 +24,7 @@ _LEAST_DAMPING = 1e-14
 
 
 def solved(
-    geometry: ContactGeometry, q: np.ndarray, chosen: np.ndarray, steps: int = _MOST_STEPS, *, ends: bool = True
+    geometry: ContactGeometry, q: np.ndarray, chosen: np.ndarray, *, ends: bool = True, turning: bool = True
 ) -> tuple[np.ndarray, np.ndarray]:
     """Configurations near ``q`` that close the chosen pairs: minima of E(q) = sum H_i(q)^2 (3-15).
 
@@ -32,24 +35,27 @@ def solved(
         q: starts, shape (n, c).
         chosen: pairs for each start, shape (n, m); one may be listed twice.
         ends: whether the apex must lie on the facet itself, or only on its line.
+        turning: whether the orientation may change.
 
     Returns:
         the configurations, and what is left of sqrt(E) [m], shape (n,). E_min = 0 (3-16) up to `SOLVED`.
     """
     q, scale = q.copy(), weights(geometry)
+    free = geometry.free.copy()
+    free[geometry.turns] &= turning
     left = np.full(len(q), np.inf)
     active = np.arange(len(q))
-    for _ in range(steps):
+    for _ in range(_MOST_STEPS):
         if not len(active):
             break
         found = geometry.equations(q[active], chosen[active])
         kept = slice(None) if ends else slice(0, 1)
         values = found.values[:, :, kept].reshape(len(active), -1)
         left[active] = np.linalg.norm(values, axis=1)
-        going = left[active] > SOLVED * geometry.size
+        going = left[active] > _ENOUGH * SOLVED * geometry.size
         active, values = active[going], values[going] / geometry.radius
         gradients = found.gradients[going][:, :, kept].reshape(len(active), values.shape[1], geometry.dimension)
-        step = _step(np.where(geometry.free, gradients, 0.0) / scale, values)
+        step = _step(np.where(free, gradients, 0.0) / scale, values)
         step *= geometry.radius / scale
         angle = np.linalg.norm(step[:, geometry.turns], axis=1, keepdims=True)
         step *= _LARGEST_ANGLE / np.maximum(angle, _LARGEST_ANGLE)

@@ -42,13 +42,13 @@ class Mode:
     kept: Mask
 
 
-def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask) -> list[Mode]:
+def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> list[Mode]:
     """All modes of contacts with these face vectors.
 
     Args:
         face_vectors: shape (m, d), with angles multiplied by a length.
         at_end: shape (m,), contacts whose apex is at the end of its facet.
-        free: shape (d,), displacements that are allowed.
+        free: shape (d,), displacements that are allowed.  turns: shape (d,), those that are angles.
 
     Where the face vectors of contacts that a motion keeps depend on each other, the first order does not tell whether
     it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then.
@@ -59,19 +59,20 @@ def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask) -> list[Mode]:
     for signs in product((1.0, -1.0), repeat=int(at_end.sum())):
         signed = rows.copy()
         signed[at_end] *= np.array(signs)[:, None]
-        for mode in _of_one_cone(signed, rows):
+        for mode in _of_one_cone(signed, rows, turns[free]):
             full = np.zeros(len(free))
             full[free] = mode.displacement
             # modes on the border of two sign patterns come from both
             rates = rows @ mode.displacement
             pattern = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
-            # motions that change no gap to first order are told apart by where they go
-            direction = b"" if pattern.any() else np.round(mode.displacement, 3).tobytes()
+            # where contacts depend on each other, the first order does not tell all motions apart
+            doubtful = _dependent(rows[mode.kept]) or not pattern.any()
+            direction = np.round(mode.displacement, 3).tobytes() if doubtful else b""
             found.setdefault(pattern.tobytes() + np.packbits(mode.kept).tobytes() + direction, Mode(full, mode.kept))
     return list(found.values())
 
 
-def _of_one_cone(signed: Rows, rows: Rows) -> Iterator[Mode]:
+def _of_one_cone(signed: Rows, rows: Rows, turns: Mask) -> Iterator[Mode]:
     cone = convert_rows(signed, np.zeros((0, signed.shape[1])), _ROUNDED)
     faces = faces_of(len(cone.lines), cone.vectors, cone.incidence, signed.shape[1])
     along = [*cone.lines, *-cone.lines]
@@ -79,6 +80,15 @@ def _of_one_cone(signed: Rows, rows: Rows) -> Iterator[Mode]:
         # along the lineality space nothing is left to first order: its own directions stand for it
         for displacement in [witness] if witness.any() else along:
             yield from _with_dropped(displacement, kept, rows)
+        if witness.any() and len(cone.lines) and _dependent(rows[kept]):
+            yield from _with_dropped(_turned_least(witness, cone.lines, turns), kept, rows)
+
+
+def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
+    """The motion of a face that turns least: facets along each other keep their contacts only while they stay so."""
+    shares, *_ = np.linalg.lstsq(lines[:, turns].T, witness[turns], rcond=None)
+    least = witness - shares @ lines
+    return least / np.linalg.norm(least)
 
 
 def _with_dropped(displacement: Vector, kept: Mask, rows: Rows) -> Iterator[Mode]:

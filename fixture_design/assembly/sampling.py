@@ -65,10 +65,10 @@ def _from_random_starts(geometry: ContactGeometry, sets: np.ndarray, rng: np.ran
     return onto(geometry, geometry.random(rng, len(sets)), sets)
 
 
-def onto(geometry: ContactGeometry, starts: np.ndarray, sets: np.ndarray) -> Sorted:
+def onto(geometry: ContactGeometry, starts: np.ndarray, sets: np.ndarray, *, turning: bool = True) -> Sorted:
     """The starts moved onto their sets of equations: those that arrive, are admissible, and have a clear state."""
     if sets.shape[1]:
-        starts, left = solved(geometry, starts, sets)
+        starts, left = solved(geometry, starts, sets, turning=turning)
         starts = starts[left <= SOLVED * geometry.size]
     found = sort_configurations(geometry, starts)
     return found[found.clear]

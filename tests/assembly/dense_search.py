@@ -1,13 +1,13 @@
 """Contact states and transitions of two polygons by another route: slices at fixed angles, solved one by one.
 
 At a fixed angle every contact pair is a line in (x, y): states with up to two contacts are points between and at the
-intersections of these lines. Angles are those of a grid, those where two edges are parallel, and those where three lines
-meet, found by sign changes of a determinant. Overlap is judged by shapely. Nothing here is used by the package.
+intersections of these lines. Angles are those of a grid, those where two edges are parallel, and those where three
+lines meet, found by sign changes of a determinant. Overlap is judged by shapely.
 """
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
@@ -72,7 +72,7 @@ class DenseSearch:
             touching.append(np.linalg.norm(p - a - share[:, None] * along, axis=-1) <= near)
         table = np.array(touching).T
         names = np.array(self.names)
-        return [None if overlap > 1e-13 else frozenset(names[row].tolist())
+        return [None if overlap > 1e-10 else frozenset(names[row].tolist())
                 for overlap, row in zip(area, table, strict=True)]  # fmt: skip
 
     def slice_states(self, theta: float) -> dict[State, np.ndarray]:
@@ -92,7 +92,7 @@ class DenseSearch:
                 continue
             near = everything[np.abs(everything @ n - line[2]) < 1e-10]
             places = [-reach, *np.unique(np.round((near - foot) @ along, 12)).tolist(), reach]
-            middles = [(a + b) / 2 for a, b in zip(places, places[1:], strict=False)]
+            middles = [(a + b) / 2 for a, b in pairwise(places)]
             points += [foot + along * t for t in middles]
             points += [foot + along * t + sign * aside * n for t in middles for sign in (-1, 1)]
         configurations = np.array([[*x, theta] for x in points]).reshape(-1, 3)
@@ -104,6 +104,7 @@ class DenseSearch:
 
     def special_angles(self) -> list[float]:
         """Where an edge of one part is parallel to one of the other, facing it."""
+
         def angles(polygon: np.ndarray) -> np.ndarray:
             along = np.roll(polygon, -1, axis=0) - polygon
             return np.arctan2(along[:, 1], along[:, 0])
@@ -154,9 +155,23 @@ class DenseSearch:
                 found.setdefault(state, []).append(q)
         return found
 
-    def loosenings(self, q: np.ndarray, turn: float = 1e-3) -> set[State]:
+    def transitions(self, states: dict[State, list[np.ndarray]], most: int = 6) -> set[tuple[State, State]]:
+        """(State with more contacts, state with fewer): what begins at some configurations of each state.
+
+        All those where facets are along each other are looked at, and up to ``most`` others.
+        """
+        special = np.array(self.special_angles())
+        found: set[tuple[State, State]] = set()
+        for state, configurations in states.items():
+            chosen = [q for q in configurations if np.abs(special - q[2]).min() < 1e-12]
+            chosen += configurations[:: max(1, len(configurations) // most)]
+            for q in chosen:
+                found |= {(state, looser) for looser in self.loosenings(q)}
+        return found
+
+    def loosenings(self, q: np.ndarray, touching: State | None = None, turn: float = 1e-3) -> set[State]:
         """States that begin at q: those of slices near it, of the lines of what touches at q, in a small disc."""
-        touching = self.state(q)
+        touching = self.state(q) if touching is None else touching
         assert touching is not None
         chosen = [k for k, name in enumerate(self.names) if name in touching]
         found: set[State] = set()
