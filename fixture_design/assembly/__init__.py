@@ -7,8 +7,10 @@ away by motions (`tracing`).
 """
 
 from fixture_design.assembly.assembly import Assembly, AssemblyBody, Region
+from fixture_design.assembly.control import contacts_at, state_control
 from fixture_design.assembly.generate import state_graph
 from fixture_design.assembly.graph import ContactState, ContactStateGraph, StateTransition
+from fixture_design.assembly.path import StatePath, Waypoint, state_path
 from fixture_design.assembly.state_at import StateAt, state_at
 from fixture_design.assembly.unseen import Unseen
 
@@ -19,8 +21,13 @@ __all__ = [
     "ContactStateGraph",
     "Region",
     "StateAt",
+    "StatePath",
     "StateTransition",
     "Unseen",
+    "Waypoint",
+    "contacts_at",
     "state_at",
+    "state_control",
     "state_graph",
+    "state_path",
 ]
