@@ -11,10 +11,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from jaxtyping import Float
 
 from fixture_design.arrays import Point, Points
 from fixture_design.errors import AssemblyError
 from fixture_design.layout import Pose, Space
+
+#: Planar [x, y, theta], spatial [x, y, z, qw, qx, qy, qz].
+Configuration = Float[np.ndarray, "c"]
 
 
 @dataclass(frozen=True, eq=False)

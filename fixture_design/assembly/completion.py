@@ -14,11 +14,10 @@ import numpy as np
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
-from fixture_design.assembly.modes import MOST_SIGNS, contact_modes
+from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.sampling import onto
 from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, state_of
 from fixture_design.assembly.tracing import trace
-from fixture_design.errors import UnsupportedError
 from fixture_design.tolerances import APART, TOUCHING
 
 #: Random directions that are traced from a sample, besides those along the axes.
@@ -121,9 +120,6 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         pairs = np.flatnonzero(touching)
         if not pairs.size:
             continue
-        if ends[k, pairs].sum() > MOST_SIGNS:
-            state = ", ".join(state_of(geometry, touching))
-            raise UnsupportedError(f"more than {MOST_SIGNS} contacts at ends of facets at once: {state}")
         for mode in contact_modes(vectors[k, pairs], ends[k, pairs], geometry.free, turns):
             rows.append(k)
             displacements.append(mode.displacement)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fixture_design.assembly.assembly import Assembly
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.planar import PlanarGeometry
-from fixture_design.errors import UnsupportedError
+from fixture_design.assembly.spatial import SpatialGeometry
 
 
 def geometry_of(assembly: Assembly) -> ContactGeometry:
@@ -13,10 +13,8 @@ def geometry_of(assembly: Assembly) -> ContactGeometry:
 
     Raises:
         AssemblyError: bodies or names that cannot be used.
-        UnsupportedError: an assembly in space.
+        UnsupportedError: in space: bodies that are not convex, or too many features.
     """
     if assembly.space == "planar":
         return PlanarGeometry.of(assembly)
-    raise UnsupportedError(
-        "contact states in space are not evaluated yet", source=assembly.source, expected="`space: planar`"
-    )
+    return SpatialGeometry.of(assembly)

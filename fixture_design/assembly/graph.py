@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fixture_design.arrays import Vector
-from fixture_design.assembly.assembly import Assembly
+from fixture_design.assembly.assembly import Assembly, Configuration
 from fixture_design.assembly.unseen import Unseen
 from fixture_design.errors import UnknownNameError
 
@@ -46,7 +46,7 @@ class StateTransition:
 
     tight: str
     loose: str
-    configuration: Vector
+    configuration: Configuration
     displacement: Vector
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fixture_design.arrays import Indices, Vector
+from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.sorting import Sorted, State, joined, state_of
 
@@ -21,7 +22,7 @@ class Transition:
             it (its contacts held) is in the state with fewer contacts, and so is all in between.
     """
 
-    q: Vector
+    q: Configuration
     displacement: Vector
 
 
@@ -87,7 +88,7 @@ class KnownStates:
             gap = np.minimum(gap, self._distances(found.q[best], found.q))
         return found[np.array(chosen, dtype=int)]
 
-    def _distances(self, q: Vector, others: np.ndarray) -> np.ndarray:
+    def _distances(self, q: Configuration, others: np.ndarray) -> np.ndarray:
         away = self.geometry.between(np.repeat(q[None], len(others), axis=0), others)
         return np.linalg.norm(away * weights(self.geometry), axis=1)
 

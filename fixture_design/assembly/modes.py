@@ -14,15 +14,16 @@ from itertools import product
 
 import numpy as np
 
-from fixture_design.arrays import Mask, Rows, Vector
+from fixture_design.arrays import Indices, Mask, Rows, Vector, Weights
 from fixture_design.cones import convert_rows
 from fixture_design.cones.kernel import faces_of
+from fixture_design.errors import UnsupportedError
 from fixture_design.tolerances import DEPENDENT, Tolerances
 
 #: Solved configurations carry the rounding of the equations, not that of input data.
 _ROUNDED = Tolerances(tie=1e-7)
 
-#: More contacts at facets' ends than this are not combined in all their signs.
+#: More independent contacts at facets' ends than this are not combined in all their signs.
 MOST_SIGNS = 10
 
 #: More contacts that depend on each other than this are not dropped in all combinations.
@@ -52,13 +53,20 @@ def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> 
 
     Where the face vectors of contacts that a motion keeps depend on each other, the first order does not tell whether
     it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then.
+
+    Raises:
+        UnsupportedError: more than `MOST_SIGNS` independent contacts at ends of facets.
     """
     rows = face_vectors[:, free]
     rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
     found: dict[bytes, Mode] = {}
-    for signs in product((1.0, -1.0), repeat=int(at_end.sum())):
+    lines, sides = _lines(rows[at_end])
+    count = int(lines.max(initial=-1)) + 1
+    if count > MOST_SIGNS:
+        raise UnsupportedError(f"{count} contacts are at ends of facets at once, more than {MOST_SIGNS}")
+    for signs in product((1.0, -1.0), repeat=count):
         signed = rows.copy()
-        signed[at_end] *= np.array(signs)[:, None]
+        signed[at_end] *= (np.array(signs)[lines] * sides)[:, None]
         for mode in _of_one_cone(signed, rows, turns[free]):
             full = np.zeros(len(free))
             full[free] = mode.displacement
@@ -70,6 +78,20 @@ def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> 
             direction = np.round(mode.displacement, 3).tobytes() if doubtful else b""
             found.setdefault(pattern.tobytes() + np.packbits(mode.kept).tobytes() + direction, Mode(full, mode.kept))
     return list(found.values())
+
+
+def _lines(rows: Rows) -> tuple[Indices, Weights]:
+    """For each row the number of its line and its side of it: rows along one line have their signs together."""
+    lines, sides = np.zeros(len(rows), dtype=int), np.ones(len(rows))
+    firsts: list[np.ndarray] = []
+    for k, row in enumerate(rows):
+        along = [float(row @ first) for first in firsts]
+        near = [i for i, cosine in enumerate(along) if abs(cosine) > 1 - DEPENDENT**2]
+        lines[k] = near[0] if near else len(firsts)
+        sides[k] = np.sign(along[near[0]]) if near else 1.0
+        if not near:
+            firsts.append(row)
+    return lines, sides
 
 
 def _of_one_cone(signed: Rows, rows: Rows, turns: Mask) -> Iterator[Mode]:

@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from fixture_design.arrays import Vector
+from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.following import held
 from fixture_design.assembly.geometry_of import geometry_of
@@ -28,7 +28,7 @@ class Waypoint:
     """A configuration on the way and the state it is in; shape (c,)."""
 
     state: str
-    configuration: Vector
+    configuration: Configuration
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class _Roadmap:
             ends = self.geometry.moved(edge.configuration[None], edge.displacement[None])[0]
             self.crossings.append((self._add(edge.tight, edge.configuration), self._add(edge.loose, ends)))
 
-    def _add(self, state: str, q: Vector) -> int:
+    def _add(self, state: str, q: Configuration) -> int:
         self.places.append(Waypoint(state, q))
         self.of_state[state].append(len(self.places) - 1)
         return len(self.places) - 1
