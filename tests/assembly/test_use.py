@@ -11,9 +11,9 @@ import pytest
 from fixture_design.assembly import ContactStateGraph, contacts_at, state_at, state_control, state_graph, state_path
 from fixture_design.cones import union_element
 from fixture_design.contacts import face_vectors
-from fixture_design.errors import AssemblyError, FileFormatError, InputError, UnknownNameError
+from fixture_design.errors import AssemblyError, FileFormatError, InputError, UnknownNameError, UnsupportedError
 from fixture_design.io import read_assembly, read_graph, write_graph, write_graphml
-from fixture_design.viewing import graph_picture
+from fixture_design.viewing import graph_picture, write_graph_picture
 from tests.assembly.parts import FIGURE_14, box, planar
 from tests.cli.conftest import command  # noqa: F401 - a fixture
 from tests.problems import FIGURE_14_TABLE_5
@@ -133,6 +133,28 @@ def test_the_picture(graph: ContactStateGraph) -> None:
     assert picture.count("<title>") == len(graph.states)
     assert picture.count("<line ") == len(graph.transitions)
     assert "apex 4 - facet 7; facet 2 - apex 1" in picture
+
+
+def test_pictures_are_files(graph: ContactStateGraph, tmp_path: Path) -> None:
+    write_graph_picture(graph, tmp_path / "graph.png")
+    assert (tmp_path / "graph.png").read_bytes().startswith(b"\x89PNG")
+    write_graph_picture(graph, tmp_path / "graph.svg")
+    assert (tmp_path / "graph.svg").read_text() == graph_picture(graph) + "\n"
+    with pytest.raises(UnsupportedError, match="SVG or PNG"):
+        write_graph_picture(graph, tmp_path / "graph.jpg")
+    with pytest.raises(FileFormatError, match="cannot be written"):
+        write_graph_picture(graph, tmp_path / "nowhere" / "graph.png")
+
+
+def test_interrupted_searches_keep_what_they_found(monkeypatch: pytest.MonkeyPatch, command: Callable) -> None:  # noqa: F811
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fixture_design.assembly.generate.complete", interrupt)
+    ran = command("states", FIGURE_14)
+    assert ran.code == 130
+    assert "interrupted: the graph is not complete" in ran.out
+    assert "apex 3 - facet 5" in ran.out
 
 
 def test_the_command(command: Callable, tmp_path: Path) -> None:  # noqa: F811 - the fixture
