@@ -12,7 +12,7 @@ from fixture_design.assembly import ContactStateGraph, contacts_at, state_at, st
 from fixture_design.cones import union_element
 from fixture_design.contacts import face_vectors
 from fixture_design.errors import AssemblyError, FileFormatError, InputError, UnknownNameError, UnsupportedError
-from fixture_design.io import read_assembly, read_graph, write_graph, write_graphml
+from fixture_design.io import json_schema, read_assembly, read_graph, write_graph, write_graphml
 from fixture_design.viewing import graph_picture, write_graph_picture
 from tests.assembly.parts import FIGURE_14, box, planar
 from tests.cli.conftest import command  # noqa: F401 - a fixture
@@ -220,3 +220,11 @@ def test_millimetres() -> None:
     assert assembly.moving.polygon.max() == 0.01
     assert assembly.region is not None
     assert assembly.region.high.tolist() == [0.05, 0.05]
+
+
+@pytest.mark.parametrize("kind", ["assembly", "graph"])
+def test_schemas(kind: str) -> None:
+    schema = json_schema(kind)
+    assert schema["title"] == f"fixture_design/{kind}/1"
+    assert schema["additionalProperties"] is False
+    assert '"null"' not in json.dumps(schema)
