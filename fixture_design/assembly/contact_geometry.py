@@ -12,6 +12,16 @@ import numpy as np
 
 from fixture_design.arrays import Mask, Vector
 from fixture_design.assembly.pair_equations import PairEquations
+from fixture_design.errors import UnsupportedError
+
+#: More contact pairs than this are refused: the search would take hours.
+MOST_PAIRS = 4000
+
+
+def refuse_too_many(pairs: int) -> None:
+    """Raises UnsupportedError where the search would not end in any useful time."""
+    if pairs > MOST_PAIRS:
+        raise UnsupportedError(f"{pairs} contact pairs are too many", expected=f"at most {MOST_PAIRS}: simpler bodies")
 
 
 @runtime_checkable

@@ -8,6 +8,7 @@ import numpy as np
 
 from fixture_design.arrays import Mask
 from fixture_design.assembly.assembly import Assembly, Region
+from fixture_design.assembly.contact_geometry import refuse_too_many
 from fixture_design.assembly.features import PlanarFeatures, planar_features
 from fixture_design.assembly.pair_equations import PairEquations
 from fixture_design.assembly.planar_overlap import ConvexPiece, overlap, pieces_of
@@ -37,8 +38,10 @@ class PlanarGeometry:
 
         Raises:
             AssemblyError: polygons that are none, names that do not fit, no pair of features that takes part.
+            UnsupportedError: too many features.
         """
         moving, fixed = planar_features(assembly)
+        refuse_too_many(2 * len(moving.starts) * len(fixed.starts))
         pairs = PlanarPairs.of(moving, fixed)
         if not pairs.takes_part.any():
             raise AssemblyError("no apex of one part can meet a facet of the other: too few features are named")

@@ -9,16 +9,14 @@ import numpy as np
 from fixture_design.arrays import Indices, Mask, Points
 from fixture_design.assembly import rotations
 from fixture_design.assembly.assembly import Assembly, Region
+from fixture_design.assembly.contact_geometry import refuse_too_many
 from fixture_design.assembly.pair_equations import PairEquations
 from fixture_design.assembly.polytope import Polytope, polytope_of
 from fixture_design.assembly.separation import SeparatingAxes
 from fixture_design.assembly.spatial_pairs import EdgePairs, FacetPairs, SpatialPairs, rows_of
 from fixture_design.assembly.together import intervals, overlapping
-from fixture_design.errors import AssemblyError, UnsupportedError
+from fixture_design.errors import AssemblyError
 from fixture_design.tolerances import TOUCHING
-
-#: More contact pairs than this are refused: the search would take hours.
-MOST_PAIRS = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,8 +180,7 @@ def _pairs(
         [(i, j) for i in range(len(mine.edges)) for j in edges],
     ]
     count = sum(map(len, groups))
-    if count > MOST_PAIRS:
-        raise UnsupportedError(f"{count} contact pairs are too many", expected=f"at most {MOST_PAIRS}: simpler bodies")
+    refuse_too_many(count)
     if not count:
         raise AssemblyError("nothing of the fixed bodies is in reach of the moving one in this region")
     kinds = (

@@ -228,3 +228,10 @@ def test_schemas(kind: str) -> None:
     assert schema["title"] == f"fixture_design/{kind}/1"
     assert schema["additionalProperties"] is False
     assert '"null"' not in json.dumps(schema)
+
+
+def test_too_many_features_are_refused() -> None:
+    angles = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    round_ones = np.column_stack([np.cos(angles), np.sin(angles)]).tolist()
+    with pytest.raises(UnsupportedError, match="7200 contact pairs are too many; expected at most 4000"):
+        state_graph(planar(round_ones, round_ones))
