@@ -11,7 +11,7 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > batch > viewing > io > design > verification > geometry | analysis > layout > contacts > cones
+    cli > batch > viewing > io > design > assembly > verification > geometry | analysis > layout > contacts > cones
         > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
@@ -30,6 +30,7 @@ The folders state the theory, and each imports only from those to its right::
   bodies all there are (`geometry.bodies`), each from the tangent cones of both sides (`contacts.polyhedral`); the part
   posed among bodies, candidate points on its surface, sliding over it.
 * `verification`: layout in, verdict out; and a checker that confirms the evidence without a solver.
+* `assembly`: which contacts two parts can have and which can follow which: the contact state graph.
 * `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
 * `io`: files. `viewing`: evidence in words, the sheet to sign. `batch`: thousands of layouts in worker processes.
@@ -60,18 +61,29 @@ from typing import TYPE_CHECKING
 from fixture_design.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from fixture_design.assembly import Assembly, ContactStateGraph, state_at, state_graph
     from fixture_design.batch import verify_batch
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
     from fixture_design.design import DesignResult, Task, design
-    from fixture_design.io import read_layout, read_task, task_of_part, write_layout
+    from fixture_design.io import (
+        read_assembly,
+        read_graph,
+        read_layout,
+        read_task,
+        task_of_part,
+        write_graph,
+        write_layout,
+    )
     from fixture_design.layout import Layout, Verdict
     from fixture_design.verification import check, contacts_of, verify
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
+    "Assembly": "assembly",
     "Contact": "contacts",
     "DesignResult": "design",
+    "ContactStateGraph": "assembly",
     "Layout": "layout",
     "PolyhedralConvexCone": "cones",
     "Task": "design",
@@ -84,11 +96,20 @@ _HOME = {
     "task_of_part": "io",
     "verify": "verification",
     "verify_batch": "batch",
+    "read_assembly": "io",
+    "read_graph": "io",
+    "read_layout": "io",
+    "state_at": "assembly",
+    "state_graph": "assembly",
+    "verify": "verification",
+    "write_graph": "io",
     "write_layout": "io",
 }
 
 __all__ = [
+    "Assembly",
     "Contact",
+    "ContactStateGraph",
     "DesignResult",
     "Layout",
     "PolyhedralConvexCone",
@@ -98,11 +119,16 @@ __all__ = [
     "check",
     "contacts_of",
     "design",
+    "read_assembly",
+    "read_graph",
     "read_layout",
     "read_task",
+    "state_at",
+    "state_graph",
     "task_of_part",
     "verify",
     "verify_batch",
+    "write_graph",
     "write_layout",
 ]
 

@@ -117,6 +117,10 @@ class GeometryError(InputError):
     """A part's geometry cannot be used: not closed, empty, unreadable, or refused by the geometry engine."""
 
 
+class AssemblyError(InputError):
+    """Two parts cannot be put together as asked: a body or region that is none, a configuration that overlaps."""
+
+
 class UnsupportedError(InputError):
     """Valid input that this version of the toolkit does not evaluate yet."""
 

@@ -185,3 +185,18 @@ NORMALS_KNOWN_TO = (0.0, 1e-3, 2e-2)
 
 #: A margin of closure that is good enough, so that accuracy counts before a larger one [-].
 GOOD_MARGIN = 1e-3
+
+#: Features of two parts this near to each other touch, and parts that overlap by less do not, relative to the size of
+#: an assembly [-]: above what solving contact equations leaves, far below any clearance.
+TOUCHING = 1e-9
+
+#: Features further apart than this certainly do not touch, relative to the size of an assembly [-]. Configurations with
+#: a distance between the two say nothing clear and are not used.
+APART = 1e-7
+
+#: Contact equations count as solved when this is left, relative to the size of an assembly [-].
+SOLVED = 1e-11
+
+#: Singular values of unit gradients below this are zeros: the contact equations depend on each other [-]. They come
+#: from solved configurations, which at a double root are known to the square root of `SOLVED` only.
+DEPENDENT = 1e-5

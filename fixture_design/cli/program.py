@@ -15,6 +15,7 @@ from fixture_design.cli.design import design
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
 from fixture_design.cli.schema import schema
+from fixture_design.cli.states import states
 from fixture_design.cli.verify import verify
 from fixture_design.cones.kernel import NAME as KERNEL
 from fixture_design.errors import InputError
@@ -31,6 +32,8 @@ app.command()(verify)
 app.command()(design)
 
 app.command()(batch)
+
+app.command()(states)
 app.command()(schema)
 
 

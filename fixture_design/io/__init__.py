@@ -1,8 +1,10 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
+from fixture_design.io.assembly_file import assembly_from_data, read_assembly
 from fixture_design.io.csv_export import write_csv
 from fixture_design.io.design_record import design_to_dict
 from fixture_design.io.documents import Document, document_of, line_document, read_bytes, read_document
+from fixture_design.io.graph_file import graph_to_dict, read_graph, write_graph, write_graphml
 from fixture_design.io.json_writer import dumps
 from fixture_design.io.layout_file import layout_from_data, layout_text, read_layout, write_layout
 from fixture_design.io.places import Place
@@ -17,22 +19,28 @@ __all__ = [
     "ContentError",
     "Document",
     "Place",
+    "assembly_from_data",
     "design_to_dict",
     "document_of",
     "dumps",
     "error_record",
+    "graph_to_dict",
     "json_schema",
     "layout_from_data",
     "layout_text",
     "line_document",
+    "read_assembly",
     "read_bytes",
     "read_document",
+    "read_graph",
     "read_layout",
     "read_task",
     "schema_names",
     "task_of_part",
     "verdict_to_dict",
     "write_csv",
+    "write_graph",
+    "write_graphml",
     "write_layout",
     "write_urdf",
 ]

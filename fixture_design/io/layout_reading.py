@@ -46,7 +46,7 @@ from fixture_design.tolerances import SURFACE_GAP
 
 #: Metres from a file's lengths. A division for millimetres, since 0.001 is not exact in binary: 20 / 1000 is the float
 #: nearest to 0.02, 20 * 0.001 need not be.
-_METRES: dict[str, Callable[[float], float]] = {
+METRES: dict[str, Callable[[float], float]] = {
     "m": lambda length: length,
     "mm": lambda length: length / 1000,
     "in": lambda length: length * 0.0254,
@@ -98,7 +98,7 @@ class _Converter:
     """Converts records of one layout, whose units, space and folder it knows."""
 
     def __init__(self, layout: LayoutRecord, folder: Path) -> None:
-        self.metres = _METRES[layout.units]
+        self.metres = METRES[layout.units]
         self._layout = layout
         self._folder = folder
 

@@ -143,6 +143,8 @@ def _expected(kind: str, limits: dict[str, Any], found: object, wanted: Any) -> 
             return f"text in quotes: '{show(found)}'" if isinstance(found, int | float) else "text"
         case "tuple_type":
             return _list_wanted(wanted)
+        case "dict_type":
+            return "a mapping: {name: number}"
         case "model_type":
             return wanted.WANTED
     raise AssertionError(f"no words for pydantic's error {kind!r}")
@@ -181,6 +183,8 @@ def _type_at(model: Any, path: KeyPath) -> Any:
     for key in path:
         if isinstance(key, int):
             wanted = _stripped(get_args(wanted)[0])
+        elif get_origin(wanted) is dict:
+            wanted = _stripped(get_args(wanted)[1])
         else:
             fields = {field.alias or name: field for name, field in wanted.model_fields.items()}
             wanted = _stripped(fields[key].annotation)

@@ -170,7 +170,10 @@ def test_schema_of_verdicts() -> None:
 def test_schema_of_nothing() -> None:
     with pytest.raises(UnknownNameError) as caught:
         json_schema("layuot")
-    assert str(caught.value) == "no file kind is called 'layuot'; did you mean 'layout'? there are: layout, verdict"
+    assert (
+        str(caught.value)
+        == "no file kind is called 'layuot'; did you mean 'layout'? there are: assembly, graph, layout, verdict"
+    )
 
 
 def test_reading_files_loads_no_geometry() -> None:

@@ -1,0 +1,147 @@
+"""From some states to all: what sampling misses is next to what it found.
+
+Sampling alone misses thin states. From every state found, all its contact modes are followed (the states one loosening
+away), and motions along its free directions until a new contact stops them, as well as its samples moved onto one more
+contact equation (the states one tightening away), until nothing new appears.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fixture_design.assembly.contact_geometry import ContactGeometry, weights
+from fixture_design.assembly.following import follow
+from fixture_design.assembly.known_states import KnownStates
+from fixture_design.assembly.modes import contact_modes
+from fixture_design.assembly.sampling import onto
+from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, state_of
+from fixture_design.assembly.tracing import trace
+from fixture_design.tolerances import APART, TOUCHING
+
+#: Random directions that are traced from a sample, besides those along the axes.
+_DIRECTIONS = 6
+
+#: Digits to which configurations are compared, so that each is followed once.
+_SAME_DIGITS = 7
+
+#: Generations after which the search ends in any case.
+_MOST_GENERATIONS = 40
+
+
+def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[str], None] = lambda _: None) -> None:
+    """Goes on from all samples until nothing new appears: no new state, and no room for more samples."""
+    fresh = joined(list(known.samples.values()))
+    seen: set[State] = set()
+    for _ in range(_MOST_GENERATIONS):
+        start = joined([fresh, _aligned(known, seen)])
+        if not len(start):
+            return
+        found = [loosen(known, start), tighten(known, start, rng), aim(known.geometry, start)]
+        fresh, _ = known.add(joined(found))
+        progress(f"{len(known.samples)} states, {len(known.transitions)} transitions")
+
+
+def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
+    """Configurations of states with two apices in one point where a facet of one part is along one of the other.
+
+    Only there do such states border on those in which these facets slide along each other; elsewhere every contact of a
+    state may be left alone, if their equations are independent.
+    """
+    geometry = known.geometry
+    found = []
+    for state in known.samples.keys() - seen:
+        samples = known.samples[state]
+        if geometry.coincident(samples.q[:1], APART * geometry.size)[0]:
+            turned = geometry.aligned(samples.q)
+            pairs = np.flatnonzero(samples.touching[0])
+            found.append(onto(geometry, turned, np.repeat(pairs[None], len(turned), axis=0), turning=False))
+            _, first = np.unique(np.round(found[-1].q, _SAME_DIGITS), axis=0, return_index=True)
+            found[-1] = found[-1][first]
+    seen.update(known.samples)
+    return joined(found) if found else next(iter(known.samples.values()))[np.zeros(0, dtype=int)]
+
+
+def loosen(known: KnownStates, start: Sorted) -> Sorted:
+    """Follows all contact modes of the configurations; notes the transitions, returns where they lead."""
+    geometry = known.geometry
+    rows, displacements, kept = _modes(geometry, start)
+    if not rows.size:
+        return start[rows]
+    followed = follow(geometry, start.q[rows], displacements, kept)
+    rows = rows[followed.rows]
+    _connect(known, start[rows], followed.ends)
+    return followed.ends
+
+
+def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sorted:
+    """Moves the configurations along free directions until something new touches; notes the transitions."""
+    geometry = known.geometry
+    directions = np.vstack([np.eye(geometry.dimension), -np.eye(geometry.dimension)])
+    count = len(directions) + _DIRECTIONS
+    rows = np.repeat(np.arange(len(start)), count)
+    drawn = rng.normal(size=(len(start), _DIRECTIONS, geometry.dimension))
+    wished = np.concatenate([np.broadcast_to(directions, (len(start), *directions.shape)), drawn], axis=1)
+    stopped = trace(geometry, start[rows], _padded(start.touching)[rows], wished.reshape(len(rows), -1))
+    before = sort_configurations(geometry, stopped.before)
+    _connect(known, stopped.ends, before)
+    return stopped.ends
+
+
+def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
+    """The configurations moved onto the equations that hold and one more: each other pair that takes part."""
+    taking = np.flatnonzero(geometry.takes_part)
+    kept = _padded(start.touching)
+    found = []
+    for k, (q, touching) in enumerate(zip(start.q, start.touching, strict=True)):
+        others = taking[~touching[taking]]
+        row = kept[k][kept[k] >= 0]
+        sets = np.column_stack([np.repeat(row[None], len(others), axis=0), others]).astype(int)
+        found.append((np.repeat(q[None], len(others), axis=0), sets))
+    width = max((sets.shape[1] for _, sets in found), default=1)
+    filled = [np.column_stack([sets, np.repeat(sets[:, -1:], width - sets.shape[1], axis=1)]) for _, sets in found]
+    if not found:
+        return start
+    return onto(geometry, np.vstack([q for q, _ in found]), np.vstack(filled))
+
+
+def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Which configuration, its motion (angles times the radius), and the pairs it keeps, -1 for none."""
+    everything = np.arange(len(geometry.names))[None]
+    vectors = geometry.equations(start.q, everything).face_vectors / weights(geometry)
+    ends = geometry.at_apices(start.q, TOUCHING * geometry.size)
+    turns = np.zeros(geometry.dimension, dtype=bool)
+    turns[geometry.turns] = True
+    rows: list[int] = []
+    displacements: list[np.ndarray] = []
+    kept: list[np.ndarray] = []
+    for k, touching in enumerate(start.touching):
+        pairs = np.flatnonzero(touching)
+        if not pairs.size:
+            continue
+        for mode in contact_modes(vectors[k, pairs], ends[k, pairs], geometry.free, turns):
+            rows.append(k)
+            displacements.append(mode.displacement)
+            kept.append(pairs[mode.kept])
+    width = max((len(pairs) for pairs in kept), default=1)
+    padded = np.full((len(kept), max(width, 1)), -1)
+    for row, pairs in zip(padded, kept, strict=True):
+        row[: len(pairs)] = pairs
+    return np.array(rows, dtype=int), np.array(displacements).reshape(len(rows), geometry.dimension), padded
+
+
+def _padded(touching: np.ndarray) -> np.ndarray:
+    """The pairs that touch, one configuration a row, -1 for none."""
+    width = max(int(touching.sum(axis=1).max(initial=0)), 1)
+    order = np.argsort(~touching, axis=1, kind="stable")[:, :width]
+    return np.where(np.take_along_axis(touching, order, axis=1), order, -1)
+
+
+def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
+    geometry = known.geometry
+    pairs = [
+        (state_of(geometry, more), state_of(geometry, fewer))
+        for more, fewer in zip(tight.touching, loose.touching, strict=True)
+    ]
+    known.connect(pairs, tight.q, geometry.between(tight.q, loose.q))

@@ -1,0 +1,20 @@
+"""Which contact geometry an assembly has."""
+
+from __future__ import annotations
+
+from fixture_design.assembly.assembly import Assembly
+from fixture_design.assembly.contact_geometry import ContactGeometry
+from fixture_design.assembly.planar import PlanarGeometry
+from fixture_design.assembly.spatial import SpatialGeometry
+
+
+def geometry_of(assembly: Assembly) -> ContactGeometry:
+    """The contact geometry of an assembly.
+
+    Raises:
+        AssemblyError: bodies or names that cannot be used.
+        UnsupportedError: in space: bodies that are not convex, or too many features.
+    """
+    if assembly.space == "planar":
+        return PlanarGeometry.of(assembly)
+    return SpatialGeometry.of(assembly)

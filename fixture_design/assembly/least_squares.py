@@ -1,0 +1,71 @@
+"""Moving configurations onto chosen contact equations: least squares of (3-15), all starts at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fixture_design.assembly.contact_geometry import ContactGeometry, weights
+from fixture_design.tolerances import SOLVED
+
+#: Steps after which a start that has not arrived is given up.
+_MOST_STEPS = 40
+
+#: Largest angle of a step [rad]: only in the angle are the equations not linear.
+_LARGEST_ANGLE = 0.5
+
+#: The share of `SOLVED` at which the steps end [-]: the last one costs little and leaves rounding only.
+_ENOUGH = 1e-2
+
+#: Damping of a step, relative to the squared distance that is left [-]: vanishes fast enough to converge quadratically.
+_DAMPING = 0.1
+
+#: Smallest damping [-]: steps stay finite where equations depend on each other.
+_LEAST_DAMPING = 1e-14
+
+
+def solved(
+    geometry: ContactGeometry, q: np.ndarray, chosen: np.ndarray, *, ends: bool = True, turning: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
+    """Configurations near ``q`` that close the chosen pairs: minima of E(q) = sum H_i(q)^2 (3-15).
+
+    Damped Gauss-Newton (Levenberg-Marquardt) on the gaps and overshoots that H is made of. In the plane [x, y, theta]
+    has no constraint, so that no rho is needed; (3-33) lacks the squares.
+
+    Args:
+        q: starts, shape (n, c).
+        chosen: pairs for each start, shape (n, m); one may be listed twice.
+        ends: whether the apex must lie on the facet itself, or only on its line.
+        turning: whether the orientation may change.
+
+    Returns:
+        the configurations, and what is left of sqrt(E) [m], shape (n,). E_min = 0 (3-16) up to `SOLVED`.
+    """
+    q, scale = q.copy(), weights(geometry)
+    free = geometry.free.copy()
+    free[geometry.turns] &= turning
+    left = np.full(len(q), np.inf)
+    active = np.arange(len(q))
+    for _ in range(_MOST_STEPS):
+        if not len(active):
+            break
+        found = geometry.equations(q[active], chosen[active])
+        kept = slice(None) if ends else slice(0, 1)
+        values = found.values[:, :, kept].reshape(len(active), -1)
+        left[active] = np.linalg.norm(values, axis=1)
+        going = left[active] > _ENOUGH * SOLVED * geometry.size
+        active, values = active[going], values[going] / geometry.radius
+        gradients = found.gradients[going][:, :, kept].reshape(len(active), values.shape[1], geometry.dimension)
+        step = _step(np.where(free, gradients, 0.0) / scale, values)
+        step *= geometry.radius / scale
+        angle = np.linalg.norm(step[:, geometry.turns], axis=1, keepdims=True)
+        step *= _LARGEST_ANGLE / np.maximum(angle, _LARGEST_ANGLE)
+        q[active] = geometry.moved(q[active], step)
+    return q, left
+
+
+def _step(gradients: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The damped step; all is in units of the radius."""
+    squares = np.einsum("nki,nkj->nij", gradients, gradients)
+    damping = _DAMPING * np.minimum((values**2).sum(axis=1), 1.0) + _LEAST_DAMPING
+    squares += damping[:, None, None] * np.eye(squares.shape[1])
+    return -np.linalg.solve(squares, np.einsum("nki,nk->ni", gradients, values)[..., None])[..., 0]

@@ -1,0 +1,131 @@
+"""The contact modes of a configuration by the cones: motions that keep some of its contacts and leave the others.
+
+Every pair that touches gives a face vector d (3-34, 3-35). Where an apex is within a facet, d . dq <= 0; each face of
+the cone of such rows is one mode (`cones.kernel.faces_of`). At the end of a facet the apex may also pass beyond, and
+both signs occur: the cones of all sign patterns together cover all motions, also where the admissible ones are a union
+(2-9). Which of the modes exist the geometry tells (`following`): here none is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from fixture_design.arrays import Indices, Mask, Rows, Vector, Weights
+from fixture_design.cones import convert_rows
+from fixture_design.cones.kernel import faces_of
+from fixture_design.errors import UnsupportedError
+from fixture_design.tolerances import DEPENDENT, Tolerances
+
+#: Solved configurations carry the rounding of the equations, not that of input data.
+_ROUNDED = Tolerances(tie=1e-7)
+
+#: More independent contacts at facets' ends than this are not combined in all their signs.
+MOST_SIGNS = 10
+
+#: More contacts that depend on each other than this are not dropped in all combinations.
+_MOST_DROPPED = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """A motion and the contacts that it keeps.
+
+    Attributes:
+        displacement: shape (d,), unit; zero on the face vectors of the contacts kept, to first order.
+        kept: shape (m,), of the contacts given.
+    """
+
+    displacement: Vector
+    kept: Mask
+
+
+def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> list[Mode]:
+    """All modes of contacts with these face vectors.
+
+    Args:
+        face_vectors: shape (m, d), with angles multiplied by a length.
+        at_end: shape (m,), contacts whose apex is at the end of its facet.
+        free: shape (d,), displacements that are allowed.  turns: shape (d,), those that are angles.
+
+    Where the face vectors of contacts that a motion keeps depend on each other, the first order does not tell whether
+    it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then.
+
+    Raises:
+        UnsupportedError: more than `MOST_SIGNS` independent contacts at ends of facets.
+    """
+    rows = face_vectors[:, free]
+    rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    found: dict[bytes, Mode] = {}
+    lines, sides = _lines(rows[at_end])
+    count = int(lines.max(initial=-1)) + 1
+    if count > MOST_SIGNS:
+        raise UnsupportedError(f"{count} contacts are at ends of facets at once, more than {MOST_SIGNS}")
+    for signs in product((1.0, -1.0), repeat=count):
+        signed = rows.copy()
+        signed[at_end] *= (np.array(signs)[lines] * sides)[:, None]
+        for mode in _of_one_cone(signed, rows, turns[free]):
+            full = np.zeros(len(free))
+            full[free] = mode.displacement
+            # modes on the border of two sign patterns come from both
+            rates = rows @ mode.displacement
+            pattern = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
+            # where contacts depend on each other, the first order does not tell all motions apart
+            doubtful = _dependent(rows[mode.kept]) or not pattern.any()
+            direction = np.round(mode.displacement, 3).tobytes() if doubtful else b""
+            found.setdefault(pattern.tobytes() + np.packbits(mode.kept).tobytes() + direction, Mode(full, mode.kept))
+    return list(found.values())
+
+
+def _lines(rows: Rows) -> tuple[Indices, Weights]:
+    """For each row the number of its line and its side of it: rows along one line have their signs together."""
+    lines, sides = np.zeros(len(rows), dtype=int), np.ones(len(rows))
+    firsts: list[np.ndarray] = []
+    for k, row in enumerate(rows):
+        along = [float(row @ first) for first in firsts]
+        near = [i for i, cosine in enumerate(along) if abs(cosine) > 1 - DEPENDENT**2]
+        lines[k] = near[0] if near else len(firsts)
+        sides[k] = np.sign(along[near[0]]) if near else 1.0
+        if not near:
+            firsts.append(row)
+    return lines, sides
+
+
+def _of_one_cone(signed: Rows, rows: Rows, turns: Mask) -> Iterator[Mode]:
+    cone = convert_rows(signed, np.zeros((0, signed.shape[1])), _ROUNDED)
+    faces = faces_of(len(cone.lines), cone.vectors, cone.incidence, signed.shape[1])
+    along = [*cone.lines, *-cone.lines]
+    for kept, witness in zip(faces.rows, faces.witnesses, strict=True):
+        # along the lineality space nothing is left to first order: its own directions stand for it
+        for displacement in [witness] if witness.any() else along:
+            yield from _with_dropped(displacement, kept, rows)
+        if witness.any() and len(cone.lines) and _dependent(rows[kept]):
+            yield from _with_dropped(_turned_least(witness, cone.lines, turns), kept, rows)
+
+
+def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
+    """The motion of a face that turns least: facets along each other keep their contacts only while they stay so."""
+    shares, *_ = np.linalg.lstsq(lines[:, turns].T, witness[turns], rcond=None)
+    least = witness - shares @ lines
+    return least / np.linalg.norm(least)
+
+
+def _with_dropped(displacement: Vector, kept: Mask, rows: Rows) -> Iterator[Mode]:
+    yield Mode(displacement, kept)
+    places = np.flatnonzero(kept)
+    if not _dependent(rows[kept]) or len(places) > _MOST_DROPPED:
+        return
+    for choice in product((False, True), repeat=len(places)):
+        if not all(choice):
+            fewer = kept.copy()
+            fewer[places] = choice
+            yield Mode(displacement, fewer)
+
+
+def _dependent(rows: Rows) -> bool:
+    if not len(rows):
+        return False
+    return len(rows) > rows.shape[1] or bool(np.linalg.svd(rows, compute_uv=False)[-1] <= DEPENDENT)
