@@ -55,7 +55,7 @@ METRES: dict[str, Callable[[float], float]] = {
 
 def metres_of(units: str) -> Callable[[float], float]:
     """What makes metres of a file's lengths."""
-    return _METRES[units]
+    return METRES[units]
 
 
 def layout_from_record(
