@@ -139,8 +139,8 @@ ALONG_NORMAL = 1e-3
 #: an assembly [-]: above what solving contact equations leaves, far below any clearance.
 TOUCHING = 1e-9
 
-#: Contact equations count as solved when this is left, relative to the size of an assembly [-]. What touches in a sample
-#: of a state touches that well: a distance that is only the product of two small ones is no contact.
+#: Contact equations count as solved when this is left, relative to the size of an assembly [-]. What touches in a
+#: sample of a state touches that well: a distance that is only the product of two small ones is no contact.
 SOLVED = 1e-12
 
 #: Features further apart than this certainly do not touch, relative to the size of an assembly [-]: the root of
