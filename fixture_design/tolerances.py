@@ -190,12 +190,13 @@ GOOD_MARGIN = 1e-3
 #: an assembly [-]: above what solving contact equations leaves, far below any clearance.
 TOUCHING = 1e-9
 
-#: Features further apart than this certainly do not touch, relative to the size of an assembly [-]. Configurations with
-#: a distance between the two say nothing clear and are not used.
-APART = 1e-7
+#: Contact equations count as solved when this is left, relative to the size of an assembly [-]. What touches in a
+#: sample of a state touches that well: a distance that is only the product of two small ones is no contact.
+SOLVED = 1e-12
 
-#: Contact equations count as solved when this is left, relative to the size of an assembly [-].
-SOLVED = 1e-11
+#: Features further apart than this certainly do not touch, relative to the size of an assembly [-]: the root of
+#: `SOLVED`. Configurations with a distance between the two say nothing clear and are not used.
+APART = 1e-6
 
 #: Singular values of unit gradients below this are zeros: the contact equations depend on each other [-]. They come
 #: from solved configurations, which at a double root are known to the square root of `SOLVED` only.

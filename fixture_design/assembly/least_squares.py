@@ -14,7 +14,7 @@ _MOST_STEPS = 40
 _LARGEST_ANGLE = 0.5
 
 #: The share of `SOLVED` at which the steps end [-]: the last one costs little and leaves rounding only.
-_ENOUGH = 1e-2
+_ENOUGH = 1e-1
 
 #: Damping of a step, relative to the squared distance that is left [-]: vanishes fast enough to converge quadratically.
 _DAMPING = 0.1

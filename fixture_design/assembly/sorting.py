@@ -10,7 +10,7 @@ from jaxtyping import Bool
 
 from fixture_design.arrays import Mask
 from fixture_design.assembly.contact_geometry import ContactGeometry
-from fixture_design.tolerances import APART, TOUCHING
+from fixture_design.tolerances import APART, SOLVED, TOUCHING
 
 #: A contact state N_i: the names of the contacting pairs, sorted.
 State = tuple[str, ...]
@@ -63,7 +63,8 @@ def _sorted(geometry: ContactGeometry, q: np.ndarray) -> Sorted:
     inside = geometry.inside(q)
     admissible = inside.copy()
     admissible[inside] = geometry.overlap(q[inside]) <= TOUCHING * geometry.size
-    clear = admissible & (touching | (distances >= APART * geometry.size)).all(axis=1)
+    certain = (distances <= SOLVED * geometry.size) | (distances >= APART * geometry.size)
+    clear = admissible & certain.all(axis=1)
     return Sorted(q, touching, distances, admissible, clear)
 
 

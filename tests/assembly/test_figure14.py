@@ -102,21 +102,21 @@ def test_transitions_are_nested_and_lead_where_they_say(graph: ContactStateGraph
 
 
 def test_seeds_give_the_same_graph(graph: ContactStateGraph) -> None:
-    for seed in range(1, 4):
-        other = state_graph(graph.assembly, seed=seed)
+    for seed in (1, 2):
+        other = state_graph(graph.assembly, seed=seed, samples=4)
         assert [state.contacts for state in other.states] == [state.contacts for state in graph.states]
         assert edges(other) == edges(graph)
 
 
 @pytest.mark.slow
 def test_many_seeds_give_the_same_graph(graph: ContactStateGraph) -> None:
-    for seed in range(4, 20):
+    for seed in range(3, 20):
         assert edges(state_graph(graph.assembly, seed=seed)) == edges(graph)
 
 
 def test_the_same_seed_gives_the_same_samples() -> None:
     assembly = read_assembly(FIGURE_14)
-    first, second = state_graph(assembly, seed=7), state_graph(assembly, seed=7)
+    first, second = (state_graph(assembly, seed=7, samples=4) for _ in range(2))
     for one, other in zip(first.states, second.states, strict=True):
         np.testing.assert_array_equal(one.samples, other.samples)
 

@@ -153,3 +153,18 @@ def test_every_two_features_are_named_apart() -> None:
     geometry = geometry_of(spatial({"box": [1, 1, 1]}, region={"x": [-20, 20], "y": [-20, 20], "z": [-4, 4]}))
     assert len(set(geometry.names)) == len(geometry.names) == 8 * 6 + 6 * 8 + 12 * 12
     assert not any(a == b for a, b in combinations(geometry.names, 2))
+
+
+@pytest.mark.slow
+def test_a_cube_in_a_corner() -> None:
+    """Floor and two walls: 1 + 3 * 26 with one of them, 3 * 240 with two, 336 with all three.
+
+    Two orthogonal directions touch a cube in the faces of their signs s and t, and such directions exist if and only if
+    the products s_i t_i are all zero or of both signs: 240 pairs. Three: also the third's signs must fit their cross
+    product: 336.
+    """
+    walls = [{"box": [2, 20, 20], "pose": {"xyz": [-1, 0, 0]}}, {"box": [20, 2, 20], "pose": {"xyz": [0, -1, 0]}}]
+    region = {"x": [0, 2], "y": [0, 2], "z": [0, 2]}
+    graph = state_graph(spatial({"box": [1, 1, 1]}, FLOOR, *walls, region=region), samples=4)
+    walls_touched = [len({contact.split(" - ")[1] for contact in state.contacts}) for state in graph.states]
+    assert [walls_touched.count(k) for k in range(4)] == [1, 3 * 26, 3 * 240, 336]
