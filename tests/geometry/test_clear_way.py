@@ -223,8 +223,8 @@ def test_a_fine_part_among_bodies_and_tips_is_quick() -> None:
     start = time.process_time()
     assert clear(surroundings, [1, 2, 3])
     assert not clear(surroundings, [0.1, -0.2, 1])
-    # 0.3 s where nothing else runs
-    assert time.process_time() - start < 5.0
+    # 0.3 s where nothing else runs; processor time grows where others compete for the caches
+    assert time.process_time() - start < 10.0
 
 
 def planar(vertices: object, *barriers: PlanarBarrier) -> PlanarSurroundings:

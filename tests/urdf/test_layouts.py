@@ -61,9 +61,9 @@ BRACKET_NORMALS = {
     **dict.fromkeys(("L1", "L2", "L3"), (0, 0, -1)),
     **dict.fromkeys(("L4", "L5"), (0, -1, 0)),
     "L6": (-1, 0, 0),
-    "K1": (0, 0, 1),
     "K2": (0, 1, 0),
     "K3": (1, 0, 0),
+    "K1": (0, 0, 1),
 }
 
 
@@ -108,7 +108,7 @@ def test_bracket_locators_are_deterministic_and_strongly_accessible(bracket, bra
 def test_bracket_is_form_closed_with_a_margin(bracket_rows):
     rows = np.array(list(bracket_rows.values()))
     assert closed(rows)
-    assert np.allclose(np.array([1, 1, 2, 1, 1, 1, 4, 2, 1]) @ rows, 0, atol=1e-12)  # as the file's comment says
+    assert np.allclose(np.array([1, 1, 2, 1, 1, 1, 2, 1, 4]) @ rows, 0, atol=1e-12)  # as the file's comment says
     # The margin s = min over |u| = 1 of max row . u is at least the radius of the largest ball about 0 in the rows'
     # convex hull; in fact they are the same.
     from scipy.spatial import ConvexHull

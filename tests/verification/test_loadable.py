@@ -278,10 +278,16 @@ def test_a_body_above_the_part(tmp_path: Path) -> None:
     others = (replace(over, role="clamp"), replace(over, role="support"))
     for other in others:
         free = ways_of(finding(Layout("block", part=part, elements=tuple(rests), bodies=(other,)), "all"))
-        np.testing.assert_allclose(free.direction, Z, atol=1e-12)
+        assert free.direction is not None
+        assert free.direction @ Z < 0.99
+        assert free.aside == ()
         assert "angle" not in free.against
         assert any(name.startswith("angle") for name in free.open)
     sides = [element("S1", (0, -0.01, 0)), element("S2", (0, 0.01, 0)), element("S3", (-0.01, 0, 0))]
+    for other in others:
+        up = ways_of(finding(Layout("block", part=part, elements=(*rests, *sides), bodies=(other,)), "all"))
+        np.testing.assert_allclose(up.direction, Z, atol=1e-12)
+        assert up.aside == ("angle",)
     shut = finding(Layout("block", part=part, elements=(*rests, *sides), bodies=(over,)))
     assert shut.answer is Answer.NO
     assert ways_of(shut).obstacle is not None
