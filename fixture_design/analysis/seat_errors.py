@@ -97,7 +97,8 @@ def slack(rows: LocatingRows, seats: Seats, errors: SeatErrors) -> np.ndarray:
     changed = np.where(inside, grown * np.linalg.norm(errors.weights, axis=2, keepdims=True), 0.0)
     moved = rows.radius[rows.owner] + rows.form
     turned = (np.abs(errors.weights) + changed) * rows.tilt
-    return np.sum(np.where(inside, (changed + turned) * moved, 0.0), axis=2)
+    # what does not move has no say, however its weight may change
+    return np.sum(np.where(inside & (moved > 0), changed + turned, 0.0) * moved, axis=2)
 
 
 @dataclass(frozen=True, eq=False)

@@ -95,6 +95,8 @@ def load_in_words(load: LoadVerdict, reference: Point, length: float) -> str:
         if isinstance(load.proof, Unbalanced):
             found += f": it moves the part: {motion_in_words(load.proof.motion, reference, length)}"
         return found + _first(load)
+    if not np.any(load.wrench):
+        return f"{name}: gravity and preloads are balanced"
     return f"{name}: can hold {reserve_in_words(load)}{_first(load)}"
 
 
