@@ -94,11 +94,16 @@ def slack(rows: LocatingRows, seats: Seats, errors: SeatErrors) -> np.ndarray:
     with np.errstate(divide="ignore"):
         grown = np.where(ratio < 1, ratio / np.maximum(1 - ratio, 0.0), np.inf)[:, None, None]
     inside = seats.inside(len(rows.rows))[:, None]
-    changed = np.where(inside, grown * np.linalg.norm(errors.weights, axis=2, keepdims=True), 0.0)
+    size = np.linalg.norm(errors.weights, axis=2, keepdims=True)
+    changed = np.where(inside, _of_what_counts(grown, size), 0.0)
+    turned = _of_what_counts(np.abs(errors.weights) + changed, rows.tilt)
     moved = rows.radius[rows.owner] + rows.form
-    turned = (np.abs(errors.weights) + changed) * rows.tilt
-    # what does not move has no say, however its weight may change
-    return np.sum(np.where(inside & (moved > 0), changed + turned, 0.0) * moved, axis=2)
+    return np.sum(np.where(inside, _of_what_counts(changed + turned, moved), 0.0), axis=2)
+
+
+def _of_what_counts(values: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """values * sizes, zero where the size is, however large the value."""
+    return np.where(sizes > 0, values, 0.0) * sizes
 
 
 @dataclass(frozen=True, eq=False)
