@@ -58,6 +58,7 @@ def seating(
         before = steps[-1].presses if steps else {}
         steps.append(_step(contacts, preloads, clamp, weight, locators, tuple(before), tolerances))
         if steps[-1].answer is Answer.NO:
+            steps[-1] = _clearly_caused(steps[-1], contacts, preloads, weight, locators, tolerances)
             break
     last = steps[-1]
     smooth = last
@@ -67,6 +68,21 @@ def seating(
     if answer is Answer.YES and _on_an_edge(contacts, preloads, weight, tolerances):
         answer, reason = Answer.UNDECIDED, "a tie: the weight is on the very edge of what the locators support"
     return Finding(answer, reason=reason, use=Seating(tuple(steps), dict(preloads), weight, smooth))
+
+
+def _clearly_caused(
+    step: SeatingStep,
+    contacts: Sequence[Contact],
+    preloads: Mapping[str, float],
+    weight: Vector,
+    locators: Sequence[str],
+    tolerances: Tolerances,
+) -> SeatingStep:
+    """The step with the cause that it has without friction, if that names fewer: friction drags others along."""
+    smooth = _step(without_friction(contacts), preloads, step.clamp, weight, locators, step.lifted, tolerances)
+    if smooth.answer is not Answer.NO or not 0 < len(smooth.lifted) < len(step.lifted):
+        return step
+    return replace(step, lifted=smooth.lifted, cause=smooth.cause)
 
 
 def sat_on(contacts: Sequence[Contact]) -> list[str]:

@@ -41,6 +41,13 @@ def test_a_clamp_beside_the_supports_unseats():
     assert asked(block({"K2": 100.0, "K3": 80.0, "corner": 1.0}), "seated").answer is Answer.YES
 
 
+def test_friction_drags_no_other_cause_along():
+    for friction in (0.0, 0.05, 0.15):
+        finding = asked(block({"K2": 100.0, "K3": 80.0, "corner": 400.0}, friction=friction), "seated")
+        assert finding.answer is Answer.NO
+        assert finding.use.steps[-1].lifted == ("S1",)
+
+
 def test_the_weight_itself_may_tip():
     layout = block()
     part = replace(layout.part, center=np.array([0.19, 0.09, 0.025]))
