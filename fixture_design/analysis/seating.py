@@ -25,9 +25,10 @@ from fixture_design.analysis.balancing import (
 )
 from fixture_design.analysis.contact_forces import ContactForces
 from fixture_design.analysis.loads import largest_factors
+from fixture_design.analysis.tipping import ON_AN_EDGE, on_an_edge
 from fixture_design.arrays import Vector, Weights
 from fixture_design.cones.force_cones import ForceCones
-from fixture_design.contacts import Contact, cross, motion_about_origin, scale_of, unit_normal, velocity
+from fixture_design.contacts import Contact, motion_about_origin, scale_of, unit_normal, velocity
 from fixture_design.layout import Answer, Finding, Seating, SeatingStep, Unbalanced, element_name
 from fixture_design.tolerances import CARRIES, DEFAULT, LOAD_TIE, WITNESS, Tolerances
 
@@ -65,8 +66,9 @@ def seating(
     if last.answer is not Answer.NO and any(contact.friction for contact in contacts):
         smooth = _step(without_friction(contacts), preloads, last.clamp, weight, locators, (), tolerances)
     answer, reason = _summed_up(steps, smooth)
-    if answer is Answer.YES and _on_an_edge(contacts, preloads, weight, tolerances):
-        answer, reason = Answer.UNDECIDED, "a tie: the weight is on the very edge of what the locators support"
+    acting = [contact for contact in contacts if contact.role != "support"]
+    if answer is Answer.YES and on_an_edge(acting, preloads, weight, np.zeros(len(weight)), tolerances):
+        answer, reason = Answer.UNDECIDED, ON_AN_EDGE
     return Finding(answer, reason=reason, use=Seating(tuple(steps), dict(preloads), weight, smooth))
 
 
@@ -88,24 +90,6 @@ def _clearly_caused(
 def sat_on(contacts: Sequence[Contact]) -> list[str]:
     """The elements that must be pressed: locators, but for pins with clearance, which touch nowhere for sure."""
     return list(dict.fromkeys(element_name(c.name) for c in contacts if c.role == "locator" and not c.clearance))
-
-
-def _on_an_edge(
-    contacts: Sequence[Contact], preloads: Mapping[str, float], weight: Vector, tolerances: Tolerances
-) -> bool:
-    """Whether the part tips if its centre of mass is off by a tie, any way."""
-    acting = [c for c in contacts if c.role != "support"]
-    scale, plane = scale_of(acting), len(contacts[0].point)
-    force = weight[:plane]
-    if not force.any():
-        return False
-    branches, complete = branches_of(acting, preloads, tolerances)
-    for shift in np.vstack([np.eye(plane), -np.eye(plane)]) * tolerances.near * scale.length:
-        turning = cross(shift[None], force[None])[0]
-        moved = np.append(force, weight[plane:] + turning)
-        if np.any(turning) and not settle(branches, complete, moved, tolerances).balances:
-            return True
-    return False
 
 
 def without_friction(contacts: Sequence[Contact]) -> list[Contact]:

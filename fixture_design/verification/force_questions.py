@@ -13,6 +13,7 @@ from fixture_design.analysis.holding import held_loads
 from fixture_design.analysis.preloads import least_preloads
 from fixture_design.analysis.seating import seating
 from fixture_design.analysis.stiffness import elastic_reactions
+from fixture_design.analysis.tipping import ON_AN_EDGE, on_an_edge
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact
 from fixture_design.layout import (
@@ -62,7 +63,10 @@ def holds_loads(layout: Layout, group: Group, found: FoundContacts, tolerances: 
         stiff,
     )
     residuals = [verdict.proof.residual for verdict in verdicts if isinstance(verdict.proof, Balance)]
-    return Finding(verdicts[worst].answer, residual=max(residuals, default=None), reason=_reason(verdicts), use=use)
+    answer, reason = verdicts[worst].answer, _reason(verdicts)
+    if answer is Answer.YES and on_an_edge(group.contacts, preloads, weight, rows[worst].wrench, tolerances):
+        answer, reason = Answer.UNDECIDED, ON_AN_EDGE
+    return Finding(answer, residual=max(residuals, default=None), reason=reason, use=use)
 
 
 def _without_preload(contacts: Sequence[Contact], preloads: Mapping[str, float]) -> str | None:
