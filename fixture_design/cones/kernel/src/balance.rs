@@ -1,6 +1,8 @@
 //! The largest load that pushes in second-order cones can balance: an interior point, several loads side by side.
 //!
+//! ```text
 //!     minimise c . x  with  A x = b,  x_i = [t, z] in K_i = {|z| <= t},  t = 1 where the cone is a ball,
+//! ```
 //!
 //! for each load l of length 1, where c = M^T l, A = N^T M, b = -N^T f and N spans the space orthogonal to l. The Python
 //! module `kernel/balance.py` is the same in numpy and says where the method comes from; what is found here is a guess that
