@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from time import monotonic
@@ -129,6 +129,8 @@ class Crew:
 
     def _start(self) -> _Worker:
         context = get_context("spawn")
+        # when it starts the tracker lets interrupts through again, also to the process that is started next
+        resource_tracker.ensure_running()
         ours, theirs = context.Pipe()
         process = context.Process(target=work, args=(theirs, self._look_at), daemon=True)
         with _one_thread(), _without_interrupts(), _without_main():
