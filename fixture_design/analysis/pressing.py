@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fixture_design.arrays import Point, Vector
-from fixture_design.contacts import Contact, cross, unit_normal
+from fixture_design.analysis.acting import wrench_at
+from fixture_design.arrays import Vector
+from fixture_design.contacts import Contact, unit_normal
 from fixture_design.layout import Element, Group, Layout, element_name
 from fixture_design.tolerances import DEFAULT
 
@@ -35,11 +36,7 @@ def weight_as_given(layout: Layout) -> Vector | None:
     part = layout.part
     if part is None or part.center is None or part.mass is None or layout.gravity is None:
         return None
-    return _wrench(part.pose.points(part.center[None])[0], part.mass * layout.gravity)
-
-
-def _wrench(point: Point, force: Point) -> Vector:
-    return np.concatenate([force, cross(point[None], force[None])[0]])
+    return wrench_at(part.pose.points(part.center[None])[0], part.mass * layout.gravity)
 
 
 def _clamp_wrench(layout: Layout, contacts: Sequence[Contact]) -> Vector | None:
@@ -66,4 +63,4 @@ def _push(element: Element | None, contacts: Sequence[Contact]) -> Vector | None
     # how a pad's force spreads over its corners is not known
     if len(normals) != 1 or contacts[0].provenance.normal_error > DEFAULT.zero:
         return None
-    return _wrench(contacts[0].point, -element.preload * unit_normal(normals[0]))
+    return wrench_at(contacts[0].point, -element.preload * unit_normal(normals[0]))

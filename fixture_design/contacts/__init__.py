@@ -1,13 +1,25 @@
 """Contacts as unidirectional constraints (thesis 2.2): points, normals with their logic, face vectors, friction."""
 
 from fixture_design.contacts.constraints import Constraints, Scale, constraints_of, scale_of
-from fixture_design.contacts.contact import ROLES, Clause, Contact, Provenance, Role, matching, unit_normal
+from fixture_design.contacts.contact import (
+    OPENED,
+    ROLES,
+    STANDING,
+    Clause,
+    Contact,
+    Provenance,
+    Role,
+    matching,
+    unit_normal,
+)
 from fixture_design.contacts.friction import Side, first_tangents, friction_edges, tangents
 from fixture_design.contacts.limit_surface import contact_edges, torsion_of_patch
 from fixture_design.contacts.wrench import cross, face_vectors, motion_about_origin, motion_scaled, velocity
 
 __all__ = [
+    "OPENED",
     "ROLES",
+    "STANDING",
     "Clause",
     "Constraints",
     "Contact",

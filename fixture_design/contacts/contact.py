@@ -26,6 +26,9 @@ from fixture_design.tolerances import FARTHEST, MOST_FRICTION
 #: What an element or contact is for. Supports come up after clamping and locate nothing.
 Role = Literal["locator", "support", "clamp", "finger"]
 ROLES: tuple[Role, ...] = ("locator", "support", "clamp", "finger")
+#: What is closed, in its place, while the part is loaded; and what is open or down then.
+STANDING: tuple[Role, ...] = ("locator", "finger")
+OPENED: tuple[Role, ...] = ("clamp", "support")
 
 #: One clause: the normals of which at least one must not be entered. `Contact` itself checks their shape.
 Clause = tuple[np.ndarray, ...]

@@ -14,14 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Point, Points, cross_products
-from fixture_design.contacts import Contact, Role, tangents, unit_normal
+from fixture_design.contacts import STANDING, Contact, Role, tangents, unit_normal
 from fixture_design.geometry.bodies import placed_geometry
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.shapes import Corners, Triangles, Vector3
 from fixture_design.layout import Element, Layout, LineTip, PadTip, PinTip, Pose, SphereTip, element_name
-
-#: Roles of what is in its place while the part is loaded.
-STANDING: tuple[Role, ...] = ("locator", "finger")
 
 #: Thickness of pads and lines in surface gaps [-].
 _THICK = 6.0

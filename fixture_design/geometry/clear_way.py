@@ -15,8 +15,8 @@ from functools import cached_property
 import numpy as np
 
 from fixture_design.arrays import Point
-from fixture_design.contacts import Contact, Role
-from fixture_design.geometry.barriers import STANDING, BallBarrier, Barrier, PointBarrier, SolidBarrier, barriers_of
+from fixture_design.contacts import STANDING, Contact, Role
+from fixture_design.geometry.barriers import BallBarrier, Barrier, PointBarrier, SolidBarrier, barriers_of
 from fixture_design.geometry.part import PartGeometry
 from fixture_design.geometry.segments import Segments, segment_distances
 from fixture_design.geometry.separation import Solid, separation

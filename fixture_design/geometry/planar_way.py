@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fixture_design.arrays import Point, Points
-from fixture_design.contacts import Contact, Role, unit_normal
-from fixture_design.geometry.barriers import STANDING
+from fixture_design.contacts import STANDING, Contact, Role, unit_normal
 from fixture_design.geometry.clear_way import Meeting, first_of
 from fixture_design.geometry.polygon import Polygon
 from fixture_design.layout import Element, Layout, LineTip, Obstacle, PadTip, Pose, SphereTip, element_name

@@ -20,7 +20,7 @@ import numpy as np
 
 from fixture_design.analysis.straight_ways import DirectionCone, WaysOfBranch, clause_value, direction_cone
 from fixture_design.arrays import Point
-from fixture_design.contacts import Contact, Role, unit_normal
+from fixture_design.contacts import OPENED, STANDING, Contact, Role, unit_normal
 from fixture_design.errors import InputError, format_length, looking_at
 from fixture_design.layout import Answer, Finding, Group, Layout, Obstacle, PinTip, StraightWays
 from fixture_design.tolerances import Tolerances
@@ -29,9 +29,6 @@ from fixture_design.verification.found import FoundContacts
 if TYPE_CHECKING:
     from fixture_design.geometry import PlanarSurroundings, Surroundings
 
-#: Roles of what is closed while the part is loaded, and stands in its place; and of what is open or down.
-STANDING: tuple[Role, ...] = ("locator", "finger")
-OPENED: tuple[Role, ...] = ("clamp", "support")
 #: Directions tried before it is left undecided.
 MOST_TRIED = 40
 #: Clear directions of which the one with fewest clamps in the way is taken.

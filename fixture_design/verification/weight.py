@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fixture_design.analysis.acting import wrench_at
 from fixture_design.arrays import Point, Vector
-from fixture_design.contacts import cross
 from fixture_design.errors import looking_at
 from fixture_design.layout import Group, Layout
 from fixture_design.verification.found import FoundContacts
@@ -25,7 +25,7 @@ class Weight:
     @property
     def wrench(self) -> Vector:
         """[f; m] about W's origin [N, N m]."""
-        return np.append(self.force, cross(self.center[None], self.force[None])[0])
+        return wrench_at(self.center, self.force)
 
 
 def weight_of(layout: Layout, found: FoundContacts) -> Weight | str:
