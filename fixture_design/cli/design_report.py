@@ -34,6 +34,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield f"accuracy {_accuracy_in_words(result.accuracy, result.best_accuracy)}"
     if result.margin is not None:
         yield f"margin of closure {result.margin:.3g}"
+    if result.preload is not None:
+        yield _preload_in_words(result)
     for note in result.notes:
         yield printable(f"note: {note}")
     outcome = _OUTCOME[result.satisfied]
@@ -75,6 +77,16 @@ def _bound_in_words(bound: Bound) -> str:
     if bound.found is None:
         return f"{least} are needed {among}"
     return f"{bound.found} elements; {least} are needed {among}: {bound.gap} more than proven"
+
+
+def _preload_in_words(result: DesignResult) -> str:
+    """How far it may be from the least one."""
+    words = f"preload {result.preload:.4g} N in all"
+    if result.best_preload_here is not None:
+        words += f"; with these locators no clamps do with less than {result.best_preload_here:.4g} N"
+    if result.best_preload is not None:
+        words += f", with others none with less than {result.best_preload:.4g} N"
+    return words
 
 
 def _accuracy_in_words(accuracy: float, best: float) -> str:

@@ -13,6 +13,7 @@ from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
+from fixture_design.design.preloads import duties_of, found_preload, preloaded
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.search import search
@@ -107,7 +108,8 @@ def _designed(
         start.candidates, task.limits, task.objective, start.locators, start.others, start.spare,
         locates=bool(set(LOCATING) & set(locators)), leaves=leaves,
         closes="without friction" if "form_closure" in everything else closes,
-        features=features_of(task, start.candidates), cancelled=cancelled,
+        features=features_of(task, start.candidates), duties=duties_of(task, plan, ways, start.candidates),
+        cancelled=cancelled,
     )  # fmt: skip
     if start.conflict:
         reason = f"{', '.join(start.conflict)} must stay, and let the part neither in nor out"
@@ -171,7 +173,7 @@ def _drawn_up(
     taken = [element.name for element in problem.candidates.elements if element is not None]
     names = named(problem.candidates, found.locators, found.clamps, taken)
     layout = layout_of(task, problem.candidates, found.locators, found.clamps, names, plan.require, plan.friction)
-    verdict = ways.verify(layout)
+    layout, verdict = preloaded(ways, problem, found, layout)
     answer = Answer.YES if verdict.satisfied is None else verdict.satisfied
     spare = tuple(Step("removed", start.name(i), "spare") for i in problem.spare if i not in found.clamps)
     closure = verdict.groups["all"].findings.get(
@@ -183,6 +185,8 @@ def _drawn_up(
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(problem, found.locators, found.clamps, names)), bound,
         found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
+        preload=found_preload(problem, layout), best_preload=outcome.best_preload,
+        best_preload_here=outcome.best_preload_here,
         reason=reason, notes=tuple(_notes(task, problem)),
     )  # fmt: skip
 
@@ -191,5 +195,5 @@ def _notes(task: Task, problem: Problem) -> Iterator[str]:
     elements = [problem.candidates.elements[index] for index in problem.kept.tolist()]
     if kept := [element.name for element in elements if element is not None and not element.fixed]:
         yield f"the bounds are those of layouts that keep {', '.join(kept)}"
-    if "preload" in task.objective:
-        yield "the objective `preload` is not evaluated by this version; the margin of closure stood for it"
+    if "preload" in task.objective and problem.duties is not None and not problem.duties.wrenches.any():
+        yield "no load and no weight acts on the part: nothing says what the clamps should push with"

@@ -10,8 +10,10 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Points, Rows, Vector
 from fixture_design.design.candidates import Candidates, Several
+from fixture_design.design.duties import Duties
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import Features, apart
+from fixture_design.design.pushing import Program
 from fixture_design.design.task import Limits, Objective
 
 
@@ -27,6 +29,7 @@ class Problem:
         leaves: whether the part must come out of the locators in a straight line.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
+        duties: what is to be balanced by preloads; None where nobody asks.
         cancelled: asked now and then.
     """
 
@@ -40,6 +43,7 @@ class Problem:
     leaves: bool = True
     closes: str | None = "without friction"
     features: Features | None = None
+    duties: Duties | None = None
     cancelled: Callable[[], bool] = lambda: False
 
     @cached_property
@@ -63,6 +67,11 @@ class Problem:
         return self.candidates.rows_with_friction if self.closes == "with friction" else self.candidates.rows
 
     @cached_property
+    def bounding_rows(self) -> Several:
+        """Rows that close whenever those with the true friction cones do, for bounds: of pyramids around the cones."""
+        return self.candidates.rows_around_friction if self.closes == "with friction" else self.candidates.rows
+
+    @cached_property
     def rows(self) -> Rows:
         """Unit face vectors of all normals, one under the other: row r is of candidate r // `each`."""
         return np.ascontiguousarray(self.candidates.rows.reshape(-1, self.candidates.dimension))
@@ -81,8 +90,25 @@ class Problem:
         """A unit motion that not even all candidates stop; None where they do, or nothing has to close."""
         if self.closes is None:
             return None
-        rows = np.ascontiguousarray(self.closing_rows.reshape(-1, self.candidates.dimension))
+        rows = np.ascontiguousarray(self.bounding_rows.reshape(-1, self.candidates.dimension))
         return free_motion(rows, self.candidates.tolerances)
+
+    @cached_property
+    def pushing(self) -> Program | None:
+        """What the least preloads are reckoned by; None where nobody asks for preloads."""
+        if self.duties is None:
+            return None
+        return Program(self._rough(outer=False), self.candidates.pushes(rough=False), self.duties)
+
+    @cached_property
+    def pushing_bound(self) -> Program | None:
+        """The same with pyramids around the friction cones, for bounds."""
+        if self.duties is None:
+            return None
+        return Program(self._rough(outer=True), self.candidates.pushes(rough=False), self.duties)
+
+    def _rough(self, *, outer: bool) -> Several:
+        return self.candidates.pushes(rough=bool(self.candidates.friction.any()), outer=outer)
 
     def rows_of(self, candidates: Indices | tuple[int, ...]) -> Indices:
         """Numbers of the rows of candidates that say something."""

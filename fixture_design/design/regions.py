@@ -78,7 +78,7 @@ def _bounded(problem: Problem, pool: Indices, enough: float) -> Hitting:
     base = np.concatenate([pool, problem.kept])
     others = np.setdiff1d(problem.clampable, base)
     found = fewest_stopping(
-        problem.closing_rows, base, others, tolerances=problem.candidates.tolerances,
+        problem.bounding_rows, base, others, tolerances=problem.candidates.tolerances,
         enough=enough - len(problem.clamps), cancelled=problem.cancelled,
     )  # fmt: skip
     return Hitting(found.chosen, found.bound + len(problem.clamps), found.free, found.cuts, found.complete)

@@ -52,6 +52,8 @@ class DesignResult:
         accuracy: worst error at a key feature for errors of 1 along the locators' normals, in its tolerances; without
             features 1 / volume of the locators' rows.  best_accuracy: no locators have a smaller one [-]; None unknown.
         margin: of closure, in the verdict's scale; None where nothing has to close.
+        preload: what the clamps push with in all [N]; None where nobody asks.  best_preload: no layout with as few
+            clamps needs less [N]; None unknown.  best_preload_here: with these locators none does, whatever the clamps.
         free: [dx; dtheta] about W's origin, a motion that no candidate stops; None where there is none.
         reason: why there is no layout, or not the one that was asked for.
         notes: for people.
@@ -66,6 +68,9 @@ class DesignResult:
     accuracy: float | None = None
     best_accuracy: float | None = None
     margin: float | None = None
+    preload: float | None = None
+    best_preload: float | None = None
+    best_preload_here: float | None = None
     free: Vector | None = None
     reason: str | None = None
     notes: tuple[str, ...] = ()

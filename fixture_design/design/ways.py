@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol, runtime_checkable
 
+from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, Scale
 from fixture_design.design.candidates import Spots
 from fixture_design.design.task import CandidateRules
@@ -12,6 +13,10 @@ from fixture_design.layout import Layout, Verdict
 
 #: Told what is being done, in words, and what part of it is behind, from 0 to 1.
 Progress = Callable[[str, float], None]
+
+
+#: [f; m] about W's origin [N, N m]: the weight, and each load, or row of a load path.
+Wrenches = tuple[Vector, Sequence[Vector]]
 
 
 @runtime_checkable
@@ -29,6 +34,10 @@ class Ways(Protocol):
 
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         """Candidate points on the part in W, with their normals."""
+        ...
+
+    def wrenches(self, layout: Layout) -> Wrenches | str:
+        """The weight and the loads that act on a layout's part; or why the weight is not known."""
         ...
 
     def contacts(self, layout: Layout) -> Sequence[Contact]:

@@ -25,6 +25,9 @@ def design_to_dict(result: DesignResult, folder: Path) -> Data:
         "accuracy": result.accuracy,
         "best_accuracy": result.best_accuracy,
         "margin": result.margin,
+        "preload": result.preload,
+        "best_preload": result.best_preload,
+        "best_preload_here": result.best_preload_here,
         "free": _numbers(result.free),
         "notes": list(result.notes),
     }

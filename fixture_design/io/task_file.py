@@ -99,4 +99,5 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
 
 def _limits(limits: LimitsRecord, task: TaskRecord) -> Limits:
     loading = None if limits.loading is None else read_only(limits.loading)
-    return Limits(limits.locators, limits.clamps, metres_of(task.units)(limits.spacing), loading)
+    preload = None if limits.preload is None else (limits.preload[0], limits.preload[1])
+    return Limits(limits.locators, limits.clamps, metres_of(task.units)(limits.spacing), loading, preload)

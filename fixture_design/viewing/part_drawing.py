@@ -50,7 +50,7 @@ def _weight(layout: Layout, geometry: PartGeometry | Polygon | None) -> str:
     if layout.gravity is None:
         return "Gravity is left out."
     found = FoundContacts((), Scale(np.zeros(len(layout.gravity)), 1.0), (), geometry)
-    weight = weight_of(layout, found)
+    weight = weight_of(layout, found.geometry)
     if isinstance(weight, str):
         return f"{weight[0].upper()}{weight[1:]}: it is left out."
     mass = float(np.linalg.norm(weight.force) / np.linalg.norm(layout.gravity)) if np.any(layout.gravity) else 0.0

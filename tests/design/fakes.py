@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fixture_design.analysis.acting import load_wrench
 from fixture_design.arrays import Points
 from fixture_design.contacts import Contact, Provenance, Scale
 from fixture_design.design import CandidateRules, Task
@@ -39,6 +40,11 @@ class Fake:
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         return self.given
 
+    def wrenches(self, layout: Layout) -> tuple[np.ndarray, list[np.ndarray]]:
+        p = self.given.points.shape[1]
+        wrenches = [load_wrench(load, p) for load in layout.loads]
+        return np.zeros(3 * (p - 1)), wrenches or [np.zeros(3 * (p - 1))]
+
     def contacts(self, layout: Layout) -> tuple[Contact, ...]:
         found = []
         for element in layout.elements:
@@ -51,7 +57,7 @@ class Fake:
         return (*found, *layout.contacts)
 
     def verify(self, layout: Layout) -> Verdict:
-        alone = Layout(layout.name, layout.space, contacts=self.contacts(layout), require=layout.require)
+        alone = replace(layout, part=None, elements=(), contacts=self.contacts(layout))
         return verify(alone)
 
 
