@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from fixture_design.batch import verify_batch
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
-    from fixture_design.design import DesignResult, Task, design
+    from fixture_design.design import DesignResult, Task, design, repair
     from fixture_design.io import (
         read_assembly,
         read_graph,
@@ -95,6 +95,7 @@ _HOME = {
     "read_graph": "io",
     "read_layout": "io",
     "read_task": "io",
+    "repair": "design",
     "state_at": "assembly",
     "state_graph": "assembly",
     "task_of_part": "io",
@@ -121,6 +122,7 @@ __all__ = [
     "read_graph",
     "read_layout",
     "read_task",
+    "repair",
     "state_at",
     "state_graph",
     "task_of_part",

@@ -8,7 +8,7 @@ import numpy as np
 
 from fixture_design.arrays import Point, Vector
 from fixture_design.cli.messages import printable
-from fixture_design.design import Bound, DesignResult, Step
+from fixture_design.design import Bound, ChangeBound, DesignResult, Step
 from fixture_design.layout import Answer
 from fixture_design.viewing.motion_words import motion_in_words
 
@@ -26,6 +26,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield printable(_step_in_words(step, reference, length))
     if result.free is not None:
         yield f"free whatever touches the part: {motion_in_words(result.free, reference, length)}"
+    if result.changes is not None:
+        yield _changes_in_words(result.changes)
     if result.bound is not None:
         yield _bound_in_words(result.bound)
     if result.out is not None:
@@ -60,12 +62,23 @@ def _step_in_words(step: Step, reference: Point, length: float) -> str:
         "twice": f"{others} locate the same thing twice",
         "in the way": "the part does not come out past it",
         "spare": "the others do without it",
+        "loads": f"it pushes with {step.preload or 0.0:.4g} N",
     }[step.why]
     return f"{step.action} {step.element}: {why}"
 
 
 def _motion(motion: Vector | None, reference: Point, length: float) -> str:
     return "what is left" if motion is None else motion_in_words(motion, reference, length)
+
+
+def _changes_in_words(changes: ChangeBound) -> str:
+    if changes.found == 0:
+        return "nothing has to change"
+    found = f"{changes.found} change{'' if changes.found == 1 else 's'}"
+    if changes.proven:
+        return f"{found}; fewer do not do it (proven)"
+    where = "" if changes.complete else " in the directions that were tried"
+    return f"{found}; at least {changes.bound} are needed{where}"
 
 
 def _bound_in_words(bound: Bound) -> str:

@@ -22,7 +22,7 @@ from fixture_design.design.start import Start, begun
 from fixture_design.design.steps import Step, additions, in_world
 from fixture_design.design.task import Task
 from fixture_design.design.unstoppable import free_for_certain
-from fixture_design.design.ways import Progress, Ways
+from fixture_design.design.ways import Progress, Ways, ways_of
 from fixture_design.errors import GeometryError
 from fixture_design.layout import Answer
 
@@ -50,7 +50,7 @@ def design(
     Example:
         >>> design(read_task("bracket.task.yaml")).layout        # doctest: +SKIP
     """
-    ways = ways or _ways_of(task)
+    ways = ways or ways_of(task.part, task.surface_gap)
     progress("candidates", 0.0)
     candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)
     best: DesignResult | None = None
@@ -70,12 +70,6 @@ def design(
         free = best.free  # the next plan has to live with it
     assert best is not None  # there is at least one plan, and candidates for it
     return best
-
-
-def _ways_of(task: Task) -> Ways:
-    from fixture_design.verification.surface import PartSurface  # noqa: PLC0415 - only where no fake is given
-
-    return PartSurface(task.part, task.surface_gap)
 
 
 def _may_let_go(task: Task) -> bool:

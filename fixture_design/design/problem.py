@@ -27,6 +27,7 @@ class Problem:
         spare: indices of clamps of the start that may leave, preferred to new ones.
         locates: whether the locators must determine the part, as far as any candidates can.
         leaves: whether the part must come out of the locators in a straight line.
+        opens: whether some motion must leave all locators at once, be it a screw.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
         duties: what is to be balanced by preloads; None where nobody asks.
@@ -41,6 +42,7 @@ class Problem:
     spare: tuple[int, ...] = ()
     locates: bool = True
     leaves: bool = True
+    opens: bool = False
     closes: str | None = "without friction"
     features: Features | None = None
     duties: Duties | None = None

@@ -9,7 +9,7 @@ from fixture_design.arrays import Vector
 from fixture_design.contacts import Contact, Scale
 from fixture_design.design.candidates import Spots
 from fixture_design.design.task import CandidateRules
-from fixture_design.layout import Layout, Verdict
+from fixture_design.layout import Layout, Part, Verdict
 
 #: Told what is being done, in words, and what part of it is behind, from 0 to 1.
 Progress = Callable[[str, float], None]
@@ -47,3 +47,10 @@ class Ways(Protocol):
     def verify(self, layout: Layout) -> Verdict:
         """The verdict on a layout."""
         ...
+
+
+def ways_of(part: Part, surface_gap: float) -> Ways:
+    """Geometry and verification of a part in a file, or of a polygon."""
+    from fixture_design.verification.surface import PartSurface  # noqa: PLC0415 - only where no fake is given
+
+    return PartSurface(part, surface_gap)

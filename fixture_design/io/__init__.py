@@ -10,7 +10,7 @@ from fixture_design.io.layout_file import layout_from_data, layout_text, read_la
 from fixture_design.io.places import Place
 from fixture_design.io.problems import ContentError
 from fixture_design.io.schemas import json_schema, schema_names
-from fixture_design.io.task_file import TASK_ENDINGS, read_task, task_of_part
+from fixture_design.io.task_file import TASK_ENDINGS, read_task, read_task_or_layout, task_of_part
 from fixture_design.io.urdf_export import write_urdf
 from fixture_design.io.verdict_record import error_record, verdict_to_dict
 
@@ -35,6 +35,7 @@ __all__ = [
     "read_graph",
     "read_layout",
     "read_task",
+    "read_task_or_layout",
     "schema_names",
     "task_of_part",
     "verdict_to_dict",
