@@ -124,10 +124,9 @@ class _Program:
         low = np.concatenate([options.stays[kept].astype(float), [0.0, 0.0]])
         high = np.concatenate([np.ones(count), [np.inf, np.inf]])
         within = LinearConstraint(np.array(rows), np.array(least), np.array(most))  # type: ignore[arg-type]
-        found = milp(
-            costs, constraints=within,
-            integrality=np.ones(count + 2), bounds=Bounds(low, high), options={"mip_rel_gap": 0.0},
-        )  # fmt: skip
+        limits = Bounds(low, high)  # type: ignore[arg-type]
+        whole = np.ones(count + 2)
+        found = milp(costs, constraints=within, integrality=whole, bounds=limits, options={"mip_rel_gap": 0.0})
         if found.x is None:
             return None
         chosen = np.zeros(len(options.candidates), dtype=bool)
