@@ -9,6 +9,8 @@ from fixture_design.errors import InputError
 
 #: Outcomes of one layout, the worst first; "nothing required" is satisfied as "yes" is.
 OUTCOMES = ("internal error", "bad input", "no", "undecided", "nothing required", "yes")
+#: Outcomes of layouts that have no verdict.
+FAILURES = frozenset({"internal error", "bad input"})
 
 
 def outcome_of(record: dict[str, Any]) -> str:

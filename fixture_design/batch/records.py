@@ -17,6 +17,7 @@ from fixture_design.io import dumps, error_record, verdict_to_dict
 from fixture_design.layout import Layout, Verdict
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
+from fixture_design.version import VERSION
 
 Record = dict[str, Any]
 #: How much a record says: answers alone; with witnesses, margins and contacts; with the admissible sets as well.
@@ -59,6 +60,8 @@ def _entry(item: Item, parts: PartCache, detail: Detail, quick: Quick | None, *,
     if quick is not None and (entry := quick(item, layout, found, start)) is not None:
         return entry
     record = verdict_record(verify(layout, found=found, sets=detail == "sets"), detail)
+    if item.variant is not None and layout.elements:
+        record["run"] |= {"surface_gap": layout.surface_gap}
     record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, TIME_DIGITS)}
     return entry_of_record(record)
 
@@ -80,10 +83,11 @@ def detail_of(record: Record) -> Detail:
 
 
 def failure(item: Item, error: Exception) -> Entry:
-    """The record of a layout that has no verdict."""
+    """The record of a layout that has no verdict; it too says what exactly it is about."""
     name = values_of(item).get("name")
     known = name if isinstance(name, str) and name else item.default_name
-    return entry_of_record(error_record(item.source, error, item.named(known)))
+    record = error_record(item.source, error, item.named(known))
+    return entry_of_record(record | {"run": {"version": VERSION, "input": input_hash(item)}})
 
 
 def entry_of_record(record: Record) -> Entry:

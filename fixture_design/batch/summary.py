@@ -66,13 +66,14 @@ class Summary:
     """Counts of a batch, kept while it runs.
 
     Attributes:
-        resumed: how many records were there before.
+        resumed: how many records were there before.  retried: how many of them were errors and were made again.
         interrupted: whether it was stopped before its end.
     """
 
     outcomes: Counter[str] = field(default_factory=Counter)
     sweeps: dict[str, Robustness] = field(default_factory=dict)
     resumed: int = 0
+    retried: int = 0
     interrupted: bool = False
 
     @property
@@ -90,6 +91,7 @@ class Summary:
             "count": self.count,
             "outcomes": {outcome: self.outcomes[outcome] for outcome in reversed(OUTCOMES)},
             "resumed": self.resumed,
+            "retried": self.retried,
             "interrupted": self.interrupted,
             "sweeps": [sweep.as_dict() for sweep in self.sweeps.values()],
         }

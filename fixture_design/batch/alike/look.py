@@ -53,13 +53,14 @@ class Alike:
         plain = not any(c.provenance.normal_error or c.torsion or c.clearance or c.linked for c in contacts)
         if self._detail == "sets" or not plain or not (layout.elements or layout.bodies):
             return None
-        key = (layout.space, layout.stages, tuple(layout.require.items()), found.notes, *map(_form, contacts))
+        swept = item.variant is not None and bool(layout.elements)
+        key = (swept, layout.space, layout.stages, tuple(layout.require.items()), found.notes, *map(_form, contacts))
         if key not in self._found:
             if len(self._found) >= _MOST_FOUND:
                 self._found.clear()
             given = Layout("", layout.space, contacts=contacts, stages=layout.stages, require=layout.require)
             kind = self._kind(given, paths_of(contacts))
-            self._found[key] = kind and replace(kind, plan=replace(kind.plan, notes=found.notes))
+            self._found[key] = kind and replace(kind, plan=replace(kind.plan, notes=found.notes), swept=swept)
         kind = self._found[key]
         if kind is None:
             return None
@@ -67,6 +68,7 @@ class Alike:
         values = {
             f"distance {k}": np.array([[c.distance + 0.0]]) for k, c in enumerate(contacts) if c.distance is not None
         }
+        values["surface gap"] = np.array([[layout.surface_gap]])
         pile = Pile([0], [layout.name], [list(row_of(contacts))], found.report, words, values)
         return next((entry for _, entry in entries_of(kind, pile, [item], start)), None)
 

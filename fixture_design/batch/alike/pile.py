@@ -22,10 +22,15 @@ from fixture_design.contacts import Scale
 
 @dataclass(eq=False)
 class Kind:
-    """Layouts of one plan, and the texts of their records by their answers."""
+    """Layouts of one plan, and the texts of their records by their answers.
+
+    Attributes:
+        swept: whether they are variants that elements touch, whose `surface_gap` the records tell.
+    """
 
     plan: Plan
     detail: Detail
+    swept: bool = False
     texts: dict[bytes, RecordText] = field(default_factory=dict)
 
     @property
@@ -144,7 +149,7 @@ def _text(kind: Kind, key: list[int]) -> RecordText:
         *answers, rank = key[index * width : (index + 1) * width]
         each = full_findings(plan, index, answers, rank, mark) if kind.full else brief_findings(answers)
         findings |= dict.fromkeys(group.names, each)
-    return record_text(plan, findings, mark, kind.detail)
+    return record_text(plan, findings, mark, kind.detail, kind.swept)
 
 
 def _filled(
