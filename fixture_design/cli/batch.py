@@ -47,7 +47,7 @@ def batch(
     ] = None,
     retry: Annotated[
         bool,
-        typer.Option("--retry", help="Look again at layouts that were errors: dead workers, time limits, bad files."),
+        typer.Option("--retry", help="Look again at errors: dead workers, time limits, bad files."),
     ] = False,
     cluster: Annotated[
         str | None,

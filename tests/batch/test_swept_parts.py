@@ -1,4 +1,4 @@
-"""Sweeps of layouts on a part: elements are displaced off its surface, touch it all the same, and the records say so."""
+"""Sweeps of layouts on a part: elements that are off its surface touch it all the same, and the records say so."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,6 @@ def test_displaced_elements_touch_and_the_record_tells_the_gap(tmp_path: Path, d
     parts, alike, gaps = PartCache(), Alike(detail), set()
     for item in items_of([tmp_path / "b.json"]):
         found, expected = (record(entry_of(item, parts, detail, q).line) for q in (alike.entry_of_found, None))
-        compare(found, expected) if detail == "full" else None
         assert "error" not in found
         assert list(found["run"])[-2:] == ["surface_gap", "input"]
         gap = found["run"]["surface_gap"]
@@ -33,6 +32,7 @@ def test_displaced_elements_touch_and_the_record_tells_the_gap(tmp_path: Path, d
         assert SURFACE_GAP < gap <= SURFACE_GAP + AT * (1 + 3**0.5) + 0.01 * np.linalg.norm([0.1, 0.08, 0.05])
         gaps.add(gap)
         if detail == "full":
+            compare(found, expected)
             assert max(contact["distance"] for contact in found["contacts"]) <= gap
     assert len(gaps) == 20
 
@@ -45,9 +45,8 @@ def test_without_a_sweep_the_gap_is_the_layouts(tmp_path: Path) -> None:
 
 
 def test_bodies_alone_may_be_swept(tmp_path: Path) -> None:
-    (tmp_path / "box.urdf").write_text(
-        '<robot name="box"><link name="b"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link></robot>'
-    )
+    box = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    (tmp_path / "box.urdf").write_text(f'<robot name="box"><link name="b">{box}</link></robot>')
     table = {"name": "table", "role": "locator", "urdf": "box.urdf", "pose": {"xyz": [0, 0, -0.1]}}
     sweep = {"part_pose": {"xyz": [0.01, 0, 0]}}
     layout = {"schema": LAYOUT, "part": {"urdf": "box.urdf"}, "bodies": [table], "sweep": sweep}
