@@ -40,6 +40,15 @@ def layout_of(item: Item, *, placed: bool = True) -> Layout:
     return replace(variant_of(layout, item.variant), name=item.named(layout.name), sweep=None)
 
 
+def nominal_of(item: Item) -> Layout:
+    """The layout whose sweep an item is a variant of, or the item's own.
+
+    Raises:
+        InputError: as `layout_of`.
+    """
+    return _nominal(item.source, item.text, item.line, placed=False)
+
+
 def values_of(item: Item) -> Mapping[str, Any]:
     """The plain values of an item's text; none where it cannot be read."""
     try:

@@ -5,17 +5,20 @@ from __future__ import annotations
 import heapq
 from array import array
 from collections import Counter
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 from fixture_design.batch.against import Change, Comparison
 from fixture_design.batch.histogram import histogram
 from fixture_design.batch.outcome import OUTCOMES, outcome_of, required_margins, smallest_margin
+from fixture_design.batch.previews import previews
 from fixture_design.batch.records import Record
 from fixture_design.batch.results import records_in
 from fixture_design.batch.summary import Summary
 from fixture_design.io.text_file import write_text
 from fixture_design.version import VERSION
+from fixture_design.viewing import CARD_STYLE
 from fixture_design.viewing.markup import Markup, joined, table, tag
 
 #: Rows of a table: more make a page slow, and the worst come first.
@@ -28,6 +31,7 @@ padding: .2rem .6rem; border-bottom: 1px solid #e4e4e4; } th { background: #f4f4
 table.sortable th { cursor: pointer; } .number { text-align: right; font-variant-numeric: tabular-nums; }
 .yes { color: #1a7f37; } .no, .bad-input, .internal-error { color: #b42318; } .undecided { color: #9a6700; }
 figure { display: inline-block; margin: .5rem 1rem .5rem 0; } figcaption { color: #555; }
+article { border-top: 2px solid #ccc; margin-top: 1rem; } small { font-weight: normal; color: #666; }
 rect.good { fill: #1a7f37; } rect.bad { fill: #b42318; } svg text { font-size: 11px; fill: #555; }
 """
 
@@ -50,12 +54,18 @@ document.querySelectorAll("table.sortable").forEach(table => {
 
 
 def write_batch_report(
-    output: Path, path: Path, summary: Summary, comparison: Comparison | None = None, now: datetime | None = None
+    output: Path,
+    path: Path,
+    summary: Summary,
+    comparison: Comparison | None = None,
+    now: datetime | None = None,
+    files: Sequence[Path] = (),
 ) -> None:
     """Writes the page about an output file.
 
     Args:
         path: replaced at once.  now: what the page says it was made at; by default the time it is.
+        files: of the batch, as `input_files` gives them, to draw the worst layouts; without them there is no drawing.
 
     Raises:
         FileFormatError: it cannot be written.
@@ -67,11 +77,17 @@ def write_batch_report(
         ("Against an earlier run", None if comparison is None else _comparison(comparison)),
         ("Margins", _margins(output)),
         ("Errors", _errors(output)),
+        ("The worst", previews(records_in(output), files) if files else None),
         ("Layouts", _layouts(output, summary.count)),
     ]
     parts = [joined([tag("h2", heading), content]) for heading, content in sections if content is not None]
     about = tag("p", f"{output.name}, {summary.count} layouts, {when}, fixture-design {VERSION}")
-    head = tag("head", Markup('<meta charset="utf-8">'), tag("title", f"{output.name}: batch"), _raw("style", _STYLE))
+    head = tag(
+        "head",
+        Markup('<meta charset="utf-8">'),
+        tag("title", f"{output.name}: batch"),
+        _raw("style", _STYLE + CARD_STYLE),
+    )
     body = tag("body", tag("h1", "Batch"), about, *parts, _raw("script", _SORT))
     write_text(path, "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n")
 

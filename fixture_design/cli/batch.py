@@ -101,7 +101,8 @@ def batch(
     else:
         print_summary(summary, comparison)
     if report is not None:
-        write_batch_report(output, report, summary, comparison)
+        # whoever interrupts it does not want to wait for drawings
+        write_batch_report(output, report, summary, comparison, files=[] if summary.interrupted else files)
     if table is not None:
         write_table(output, table)
     if summary.interrupted:
