@@ -37,11 +37,12 @@ class TimeLimitError(FixtureDesignError):
 
 
 class Looked(NamedTuple):
-    """A layout whose contacts are known; ``seconds``: what that took."""
+    """A layout whose contacts are known; ``input``: its hash; ``seconds``: what that took."""
 
     item: Item
     layout: Layout
     found: FoundContacts
+    input: str
     seconds: float
 
 
@@ -82,16 +83,17 @@ def _looked(item: Item, parts: PartCache, placed: bool) -> Looked:
     start = perf_counter()
     layout = layout_of(item, placed=placed)
     found = contacts_of(layout, parts.geometry_of(layout))
-    return Looked(item, layout, found, perf_counter() - start)
+    digest = input_hash(item)
+    return Looked(item, layout, found, digest, perf_counter() - start)
 
 
 def _entry(looked: Looked, detail: Detail) -> Entry:
-    start, (item, layout, found, seconds) = perf_counter(), looked
+    start, (item, layout, found, digest, seconds) = perf_counter(), looked
     record = verdict_record(verify(layout, found=found, sets=detail == "sets"), detail)
     if item.variant is not None and layout.elements:
         record["run"] |= {"surface_gap": layout.surface_gap}
     seconds += perf_counter() - start
-    record["run"] |= {"input": input_hash(item), "time": round(seconds, TIME_DIGITS)}
+    record["run"] |= {"input": digest, "time": round(seconds, TIME_DIGITS)}
     return entry_of_record(record)
 
 

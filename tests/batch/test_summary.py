@@ -47,6 +47,15 @@ def test_the_smallest_margin_is_that_of_what_is_required() -> None:
     assert smallest_margin(record) == 0.1
 
 
+@pytest.mark.parametrize(("leaving", "smallest"), [(0.0, 0.1), (0.05, 0.1), (-0.2, -0.2)])
+def test_sliding_out_is_no_small_margin(leaving: float, smallest: float) -> None:
+    record = {
+        "groups": {"all": {"form_closure": {"margin": 0.1}, "loadable": {"margin": leaving}}},
+        "requirements": [{"group": "all", "require": "form_closure"}, {"group": "all", "require": "loadable"}],
+    }
+    assert smallest_margin(record) == smallest
+
+
 def test_the_worst_variant_has_the_worst_outcome_then_the_smallest_margin() -> None:
     summary = Summary()
     text = json.dumps(planar(sweep={"friction": [0.1, 0.5], "samples": 5, "seed": 1}))

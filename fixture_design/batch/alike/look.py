@@ -54,7 +54,7 @@ class Alike:
         return [entry for kind, pile in piles.items() for entry in entries_of(kind, pile, items)]
 
     def _kind_of_found(self, looked: Looked) -> Kind | None:
-        item, layout, found, _ = looked
+        item, layout, found, *_ = looked
         contacts = found.contacts
         plain = not any(c.provenance.normal_error or c.torsion or c.clearance or c.linked for c in contacts)
         if self._detail == "sets" or not plain or not (layout.elements or layout.bodies):
@@ -133,6 +133,7 @@ def _put(pile: Pile, place: int, looked: Looked) -> None:
     pile.names.append(layout.name)
     pile.numbers.append(list(row_of(found.contacts)))
     pile.reports.append(found.report)
+    pile.inputs.append(looked.input)
     pile.seconds.append(looked.seconds)
     named = enumerate(found.contacts)
     pile.words.append({f"feature {k}": as_json(c.feature) for k, c in named if c.feature is not None})

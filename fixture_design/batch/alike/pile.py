@@ -45,7 +45,7 @@ class Pile:
     Attributes:
         reports: the scales of the reports, where they are not those of the contacts.
         words, values: further texts and numbers of the records, by the names of their marks.
-        seconds: what was spent on each before.
+        inputs: their hashes, where they are known.  seconds: what was spent on each before.
     """
 
     places: list[int] = field(default_factory=list)
@@ -54,6 +54,7 @@ class Pile:
     reports: list[Scale] = field(default_factory=list)
     words: list[dict[str, str]] = field(default_factory=list)
     values: list[dict[str, float]] = field(default_factory=list)
+    inputs: list[str] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
 
 
@@ -167,7 +168,7 @@ def _filled(
         words = (pile.words[row] if pile.words else {}) | {
             "name": as_json(pile.names[row]),
             "source": as_json(item.source),
-            "input": f'"{input_hash(item)}"',
+            "input": f'"{pile.inputs[row] if pile.inputs else input_hash(item)}"',
         }
         for index, texts in places.items():
             words[f"{index} basis"] = "[" + ", ".join([texts[k] for k in table.bases[index][row].tolist()]) + "]"
