@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +10,8 @@ import numpy as np
 
 from fixture_design.batch.item import Item
 from fixture_design.batch.items import items_of
-from fixture_design.batch.outcome import FAILURES, OUTCOMES, outcome_of, smallest_margin
 from fixture_design.batch.part_cache import PartCache
 from fixture_design.batch.reading import layout_of, nominal_of
-from fixture_design.batch.records import Record
 from fixture_design.batch.sweep import Deviations, deviations_of
 from fixture_design.errors import InputError
 from fixture_design.layout import Layout, Verdict
@@ -22,41 +20,21 @@ from fixture_design.verification.found import FoundContacts
 from fixture_design.viewing import card
 from fixture_design.viewing.markup import Markup, joined, tag
 
-#: Layouts that are drawn.
-MOST_PREVIEWS = 8
-
 #: Draws one layout with its contacts and verdict.
 Draw = Callable[[Layout, FoundContacts, Verdict], Markup]
 
 
-def previews(records: Iterable[Record], files: Sequence[Path], draw: Draw = card) -> Markup | None:
-    """The worst layouts of a batch, drawn; None where none has a verdict.
+def previews(numbers: Sequence[int], files: Sequence[Path], draw: Draw = card) -> Markup | None:
+    """Some layouts of a batch, drawn; None where there are none.
 
     Args:
-        records: of the batch, in order.  files: those it is about, as `input_files` gives them.
+        numbers: their places in the batch, as `Worst` has them.  files: of the batch, as `input_files` gives them.
         draw: what a layout looks like; by default the part from three sides, its contacts, and the requirements.
     """
-    numbers = worst_numbers(records)
     items = dict(_numbered(items_of(files), set(numbers)))
     parts = PartCache()
     drawn = [_drawn(items[number], number, parts, draw) for number in numbers if number in items]
     return joined(drawn) if drawn else None
-
-
-def worst_numbers(records: Iterable[Record], most: int = MOST_PREVIEWS) -> list[int]:
-    """The places of the worst records that have a verdict, the worst first; of a sweep the worst variant alone."""
-    worst: dict[object, tuple[int, float, int]] = {}
-    for number, record in enumerate(records):
-        outcome = outcome_of(record)
-        if outcome in FAILURES:
-            continue
-        margin = smallest_margin(record)
-        bad = OUTCOMES.index(outcome), float("inf") if margin is None else margin, number
-        source = record.get("source")
-        worst[source] = min(bad, worst.get(source, bad))
-        if len(worst) > most:
-            del worst[max(worst, key=lambda source: worst[source])]
-    return [number for *_, number in sorted(worst.values())]
 
 
 def _numbered(items: Iterator[Item], wanted: set[int]) -> Iterator[tuple[int, Item]]:

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-import heapq
-from array import array
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 from fixture_design.batch.against import Change, Comparison
+from fixture_design.batch.collected import MOST_ROWS, Row, collected
 from fixture_design.batch.histogram import histogram
-from fixture_design.batch.outcome import OUTCOMES, outcome_of, required_margins, smallest_margin
+from fixture_design.batch.outcome import OUTCOMES
 from fixture_design.batch.previews import previews
-from fixture_design.batch.records import Record
 from fixture_design.batch.results import records_in
 from fixture_design.batch.summary import Summary
 from fixture_design.io.text_file import write_text
 from fixture_design.version import VERSION
 from fixture_design.viewing import CARD_STYLE
 from fixture_design.viewing.markup import Markup, joined, table, tag
-
-#: Rows of a table: more make a page slow, and the worst come first.
-MOST_ROWS = 2000
 
 _STYLE = """
 body { font: 14px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 80rem; padding: 0 1rem; color: #222; }
@@ -71,14 +66,15 @@ def write_batch_report(
         FileFormatError: it cannot be written.
     """
     when = (now or datetime.now(UTC)).strftime("%Y-%m-%d %H:%M UTC")
+    found = collected(records_in(output))
     sections = [
         ("Outcomes", _counts(summary)),
         ("Sweeps", _sweeps(summary)),
         ("Against an earlier run", None if comparison is None else _comparison(comparison)),
-        ("Margins", _margins(output)),
-        ("Errors", _errors(output)),
-        ("The worst", previews(records_in(output), files) if files else None),
-        ("Layouts", _layouts(output, summary.count)),
+        ("Margins", _margins(found.margins)),
+        ("Errors", _errors(found.errors)),
+        ("The worst", previews(found.worst.numbers, files) if files else None),
+        ("Layouts", _layouts(found.rows, summary.count)),
     ]
     parts = [joined([tag("h2", heading), content]) for heading, content in sections if content is not None]
     about = tag("p", f"{output.name}, {summary.count} layouts, {when}, fixture-design {VERSION}")
@@ -130,46 +126,24 @@ def _change(change: Change) -> list[object]:
     return [change.name, change.source, change.what, *values]
 
 
-def _margins(output: Path) -> Markup | None:
+def _margins(margins: Mapping[str, Sequence[float]]) -> Markup | None:
     """One histogram for everything that is required; brief records have no margins."""
-    found: dict[str, array[float]] = {}
-    for record in records_in(output):
-        for what, margin in required_margins(record):
-            if margin is not None:
-                found.setdefault(what, array("d")).append(margin)
-    return joined(histogram(margins, what) for what, margins in found.items()) if found else None
+    return joined(histogram(known, what) for what, known in margins.items()) if margins else None
 
 
-def _errors(output: Path) -> Markup | None:
-    kinds = Counter(record["error"]["kind"] for record in records_in(output) if "error" in record)
+def _errors(kinds: Counter[str]) -> Markup | None:
     return table(["kind", "layouts"], [[kind, _number(n)] for kind, n in kinds.most_common()]) if kinds else None
 
 
-def _layouts(output: Path, count: int) -> Markup:
-    worst = heapq.nsmallest(MOST_ROWS, enumerate(records_in(output)), key=lambda pair: _badness(*pair))
+def _layouts(worst: Sequence[Row], count: int) -> Markup:
     rows = [
-        [_number(number + 1), record["name"], record.get("source"), _outcome(outcome_of(record)),
-         _margin(smallest_margin(record)), _why(record), _margin(record.get("run", {}).get("time"))]
-        for number, record in worst
+        [_number(row.number + 1), row.name, row.source, _outcome(row.outcome), _margin(row.margin), row.why,
+         _margin(row.seconds)]
+        for row in worst
     ]  # fmt: skip
     said = f"The {MOST_ROWS} worst of {count}." if count > MOST_ROWS else "The worst first."
     headings = ["#", "layout", "source", "outcome", "smallest margin", "why", "time [s]"]
     return joined([tag("p", said, " A click on a heading sorts."), table(headings, rows, class_="sortable")])
-
-
-def _badness(number: int, record: Record) -> tuple[int, float, int]:
-    margin = smallest_margin(record)
-    return OUTCOMES.index(outcome_of(record)), float("inf") if margin is None else margin, number
-
-
-def _why(record: Record) -> str:
-    """What is open, or what went wrong."""
-    if "error" in record:
-        return f"{record['error']['kind']}: {record['error']['message']}"
-    rows = [row for row in record.get("requirements", []) if row["verdict"] != "yes"]
-    return ", ".join(
-        f"{row['group']}: {row['require'].replace('_', ' ')} {row['verdict'] or 'no contacts'}" for row in rows
-    )
 
 
 def _outcome(word: str) -> Markup:

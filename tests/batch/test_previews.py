@@ -7,8 +7,9 @@ import numpy as np
 
 from fixture_design.batch import input_files
 from fixture_design.batch.outcome import OUTCOMES
-from fixture_design.batch.previews import MOST_PREVIEWS, deviations_in_words, previews, worst_numbers
+from fixture_design.batch.previews import deviations_in_words, previews
 from fixture_design.batch.sweep import Deviations
+from fixture_design.batch.worst import MOST_PREVIEWS, worst_numbers
 from fixture_design.layout import Layout, Verdict
 from fixture_design.verification.found import FoundContacts
 from fixture_design.viewing.markup import Markup, tag
@@ -21,7 +22,7 @@ from tests.batch.test_pages import failed, record
 def drawn(tmp_path: Path, layouts: list[object]) -> str:
     library = lines(tmp_path / "lib.jsonl", layouts)
     _, records = run(library, tmp_path / "o.jsonl", detail="full")
-    return previews(records, input_files([library])) or ""
+    return previews(worst_numbers(records), input_files([library])) or ""
 
 
 def test_the_worst_are_no_then_undecided_then_small_margins() -> None:
@@ -81,7 +82,7 @@ def test_a_file_that_is_another_one_by_now_is_said(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text(json.dumps(planar("a", require=FAILS)))
     _, records = run(tmp_path / "a.json", tmp_path / "o.jsonl")
     (tmp_path / "a.json").write_text(json.dumps({"schema": LAYOUT}))
-    text = previews(records, [tmp_path / "a.json"])
+    text = previews(worst_numbers(records), [tmp_path / "a.json"])
     assert text is not None
     assert "a.json" in text
     assert "<svg" not in text
@@ -94,4 +95,4 @@ def test_another_drawing_may_take_its_place(tmp_path: Path) -> None:
     def draw(layout: Layout, found: FoundContacts, verdict: Verdict) -> Markup:
         return tag("canvas", layout.name, len(found.contacts), verdict.satisfied)
 
-    assert "<canvas>a3no</canvas>" in (previews(records, [library], draw) or "")
+    assert "<canvas>a3no</canvas>" in (previews(worst_numbers(records), [library], draw) or "")
