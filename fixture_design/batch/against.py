@@ -13,8 +13,10 @@ from fixture_design.batch.outcome import OUTCOMES, outcome_of, required_margins
 from fixture_design.batch.records import Record
 from fixture_design.batch.results import key_of, records_in
 from fixture_design.errors import FileFormatError
+from fixture_design.tolerances import DEFAULT
 
-#: Margins that are smaller by this part of what they were are said to be lost [-]: less is rounding, or nobody's worry.
+#: Margins that are smaller by this part of what they were, and by more than ties are apart, are said to be lost [-]:
+#: less is rounding, or nobody's worry.
 LOST = 0.01
 
 
@@ -157,5 +159,5 @@ def _losses(known: _Known, before: Iterable[tuple[str, float | None]]) -> Iterat
     were = dict(before)
     for what, margin in known.margins:
         was = were.get(what)
-        if was is not None and margin is not None and was - margin > LOST * abs(was):
+        if was is not None and margin is not None and was - margin > max(LOST * abs(was), DEFAULT.tie):
             yield Change(known.name, known.source, what, was, margin)

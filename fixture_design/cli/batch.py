@@ -95,16 +95,16 @@ def batch(
         )  # fmt: skip
     progress.close()
     comparison = compare(output, against) if against is not None and not summary.interrupted else None
-    if as_json:
-        said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
-        typer.echo(dumps(said))
-    else:
-        print_summary(summary, comparison)
     if report is not None:
         # whoever interrupts it does not want to wait for drawings
         write_batch_report(output, report, summary, comparison, files=[] if summary.interrupted else files)
     if table is not None:
         write_table(output, table)
+    if as_json:
+        said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
+        typer.echo(dumps(said))
+    else:
+        print_summary(summary, comparison)
     if summary.interrupted:
         say(f"{summary.count} records are in {output}; the same command goes on from there")
         raise typer.Exit(ExitCode.INTERRUPTED)

@@ -65,6 +65,10 @@ def test_layouts_are_found_again_where_the_library_moved_or_a_name_was_lost(tmp_
     assert [c.after for c in found.changed] == ["bad input"]
 
 
+def test_noise_of_a_margin_of_nothing_is_no_loss(tmp_path: Path) -> None:
+    assert compared(tmp_path, [record("a", "no", 1.5e-16)], [record("a", "no", 1e-17)]).lost == []
+
+
 def test_variants_of_one_name_are_not_mixed_up(tmp_path: Path) -> None:
     old = [record("x", source="a.yaml"), record("x", "no", source="b.yaml")]
     assert compared(tmp_path, old, old[::-1]).changed == []

@@ -55,10 +55,10 @@ def test_an_error_of_ours_has_its_own_code_until_it_is_looked_at_again(command: 
     (item,) = items_of([library])
     output.write_bytes(failure(item, WorkerError("it died")).line)
     ran = command("batch", library, "-o", output, "--jobs", 1)
-    assert (ran.code, ran.out) == (4, "1 layouts, 1 of them from before\n  internal error: 1\n")
+    assert (ran.code, ran.out) == (4, "1 layout, 1 of them from before\n  internal error: 1\n")
     ran = command("batch", library, "-o", output, "--jobs", 1, "--retry")
     assert (ran.code, ran.out.splitlines()[1:]) == (0, ["  yes: 1"])
-    assert ran.out.startswith("1 layouts, 1 of them from before; 1 that were errors were looked at again\n")
+    assert ran.out.startswith("1 layout, 1 of them from before; 1 that were errors were looked at again\n")
     assert [record["satisfied"] for record in records(output)] == ["yes"]
 
 
@@ -129,6 +129,15 @@ def test_against_an_earlier_run_with_page_and_table(command: Callable, tmp_path:
     assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
     told = json.loads(command("batch", library, "-o", new, "--against", old, "--json", "--jobs", 1).out)
     assert [change["name"] for change in told["against"]["changed"]] == ["a"]
+
+
+def test_a_reader_who_leaves_costs_no_page(tmp_path: Path) -> None:
+    library, page = lines(tmp_path / "lib.jsonl", [planar("a", require=HOLDS)]), tmp_path / "r.html"
+    process = start(library, "-o", tmp_path / "o.jsonl", "--report", page)
+    assert process.stdout is not None
+    process.stdout.close()
+    assert process.wait() == 141
+    assert "</html>" in page.read_text()
 
 
 def test_malformed_files_cost_nobody_else(tmp_path: Path) -> None:
