@@ -65,12 +65,14 @@ def _off(item: Item) -> Markup | None:
 
 
 def deviations_in_words(off: Deviations) -> str:
-    """ "the part by (0.1, 0, 0) mm, turned by (0, 0, 0.5) degrees; L1 by (0, 0.02, 0) mm; friction 0.21"."""
+    """ "the part by (0.1, 0, 0) mm; the part turned by (0, 0, 0.5) degrees; L1 by (0, 0.02, 0) mm; friction 0.21"."""
     plane = 2 if len(off.pose) == 3 else 3
     said = []
-    if off.pose.any():
+    if off.pose[:plane].any():
+        said.append(f"the part by {_millimetres(off.pose[:plane])}")
+    if off.pose[plane:].any():
         turn = ", ".join(f"{angle:.3g}" for angle in np.rad2deg(off.pose[plane:]).tolist())
-        said.append(f"the part by {_millimetres(off.pose[:plane])}, turned by ({turn}) degrees")
+        said.append(f"the part turned by ({turn}) degrees")
     said += [f"{name} by {_millimetres(way)}" for name, way in off.at.items() if way.any()]
     return "; ".join([*said, *([] if off.friction is None else [f"friction {off.friction:.3g}"])])
 

@@ -11,9 +11,9 @@ from fixture_design.batch.against import Change, Comparison
 from fixture_design.batch.collected import MOST_ROWS, Row, collected
 from fixture_design.batch.histogram import histogram
 from fixture_design.batch.outcome import OUTCOMES
-from fixture_design.batch.previews import previews
+from fixture_design.batch.previews import deviations_in_words, previews
 from fixture_design.batch.results import records_in
-from fixture_design.batch.summary import Summary
+from fixture_design.batch.summary import Robustness, Summary
 from fixture_design.io.text_file import write_text
 from fixture_design.version import VERSION
 from fixture_design.viewing import CARD_STYLE
@@ -39,6 +39,7 @@ document.querySelectorAll("table.sortable").forEach(table => {
     const key = row => row.cells[column].innerText;
     rows.sort((a, b) => {
       const x = key(a), y = key(b), u = parseFloat(x), v = parseFloat(y);
+      if (!x || !y) return !x - !y;  // what is empty comes last both ways
       const order = isNaN(u) || isNaN(v) ? (isNaN(u) - isNaN(v)) || x.localeCompare(y) : u - v;
       return down ? order : -order;
     });
@@ -106,9 +107,25 @@ def _sweeps(summary: Summary) -> Markup | None:
         sure = f"{100 * low:.3g} % to {100 * high:.3g} %" if sweep.sampled else "a grid"
         worst, margin = ("", None) if sweep.worst is None else (sweep.worst_name, sweep.worst.margin)
         outcome = "" if sweep.worst is None else _outcome(sweep.worst.outcome)
-        rows.append([sweep.source, _number(sweep.count), _number(sweep.holds), sure, worst, outcome, _margin(margin)])
-    headings = ["sweep", "variants", "hold", "95 % confidence", "worst variant", "outcome", "margin"]
+        rows.append(
+            [
+                sweep.source,
+                _number(sweep.count),
+                _number(sweep.holds),
+                sure,
+                worst,
+                outcome,
+                _margin(margin),
+                _off(sweep),
+            ]
+        )
+    headings = ["sweep", "variants", "hold", "95 % confidence", "worst variant", "outcome", "margin", "it is off by"]
     return table(headings, rows, class_="sortable")
+
+
+def _off(sweep: Robustness) -> Markup:
+    off = sweep.worst_off
+    return tag("small", "" if off is None else deviations_in_words(off))
 
 
 def _comparison(comparison: Comparison) -> Markup:

@@ -16,6 +16,7 @@ from fixture_design.batch.report import MOST_ROWS, write_batch_report
 from fixture_design.batch.summary import Summary
 from fixture_design.batch.table import check_table, write_table
 from fixture_design.errors import FileFormatError, InputError
+from tests.batch.layouts import planar
 
 SCHEMA = "fixture_design/verdict/1"
 
@@ -174,7 +175,8 @@ def page(tmp_path: Path, records: list[dict], comparison: Comparison | None = No
 
     summary = Summary()
     for number, each in enumerate(records):
-        item = Item(each["source"], b"", variant=number if "[" in each["name"] else None, sampled=True)
+        text = json.dumps(planar(sweep={"at": 0.1, "samples": 9})).encode()
+        item = Item(each["source"], text, 1, number if "[" in each["name"] else None, sampled=True)
         summary.add(item, Entry(json.dumps(each).encode(), outcome_of(each), smallest_margin(each)))
     path = tmp_path / "page.html"
     when = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
@@ -190,7 +192,14 @@ def test_the_page_is_whole_self_contained_and_escaped(tmp_path: Path) -> None:
     assert tags.open == []
     assert tags.count["script"] == 1
     assert not re.search(r"(src|href)=|https?://", text)
-    for words in ("2026-01-02 03:04 UTC", "a&lt;script&gt;", "&lt;b&gt;no&lt;/b&gt;", "all: form closure", "s[1]"):
+    for words in (
+        "2026-01-02 03:04 UTC",
+        "a&lt;script&gt;",
+        "&lt;b&gt;no&lt;/b&gt;",
+        "all: form closure",
+        "s[1]",
+        "P2 by (",
+    ):
         assert words in text
     assert tags.count["rect"] == 40
 

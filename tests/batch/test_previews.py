@@ -74,7 +74,7 @@ def test_a_variant_says_how_far_it_is_off(tmp_path: Path) -> None:
     assert "Off what the layout says: P2 by (" in text
     off = Deviations(np.array([0.001, 0, 0, 0, 0, np.pi / 180]), {"A": np.array([0, 2e-5, 0]), "B": np.zeros(3)}, 0.25)
     assert deviations_in_words(off) == (
-        "the part by (1, 0, 0) mm, turned by (0, 0, 1) degrees; A by (0, 0.02, 0) mm; friction 0.25"
+        "the part by (1, 0, 0) mm; the part turned by (0, 0, 1) degrees; A by (0, 0.02, 0) mm; friction 0.25"
     )
 
 
