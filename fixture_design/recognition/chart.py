@@ -65,10 +65,10 @@ def _span_coordinates(rows: np.ndarray, plane: int) -> np.ndarray:
     return np.concatenate([np.arctan2(sine, cosine), np.arctan(rows[..., 2])], axis=1)
 
 
-def spread(points: np.ndarray, spacing: float, first: int = 0) -> list[int]:
-    """Rows that leave no row further than ``spacing`` from one of them, farthest first from ``first``."""
-    chosen = [first]
-    nearest = np.linalg.norm(points - points[first], axis=1)
+def spread(points: np.ndarray, spacing: float) -> list[int]:
+    """The extremes of every coordinate, and rows that leave none further than ``spacing`` from one of them."""
+    chosen = sorted({0, *points.argmin(axis=0).tolist(), *points.argmax(axis=0).tolist()})
+    nearest = np.min([np.linalg.norm(points - points[row], axis=1) for row in chosen], axis=0)
     while nearest.max(initial=0.0) > spacing:
         chosen.append(int(nearest.argmax()))
         nearest = np.minimum(nearest, np.linalg.norm(points - points[chosen[-1]], axis=1))

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 
-from fixture_design.arrays import Rows, Weights
+from fixture_design.arrays import Rows, Vector, Weights
 from fixture_design.cones.cone import unit_rows
-from fixture_design.recognition.measurement import (
-    MeasurementSet,
-    largest_outside,
-    largest_outside_faces,
-    oriented_rows,
-)
+from fixture_design.cones.kernel import nonnegative_least_squares
+from fixture_design.recognition.measurement import MeasurementSet, oriented_rows
 from fixture_design.recognition.sample_cones import SampleCones
 from fixture_design.recognition.signals import Signals
 
@@ -31,17 +28,37 @@ def forces_outside(found: MeasurementSet, samples: SampleCones, signals: Signals
     return np.array([_outside(unit_rows(rows)[0], blocks) for rows in samples.forces])
 
 
-def displacements_outside(found: MeasurementSet, samples: SampleCones, signals: Signals) -> Weights:
-    """For every sample the least bound that every alternative of its displacement set needs; shape (n,)."""
-    blocks = _blocks(found, slice(signals.force_size, signals.size))
-    worst = []
-    for alternatives in samples.displacements:
-        each = []
-        for faces in alternatives:
-            unit = unit_rows(faces)[0]
-            each.append(min(max((largest_outside_faces(unit, row) for row in rows), default=0.0) for rows in blocks))
-        worst.append(max(each))
-    return np.array(worst)
+def displacements_outside(
+    alternatives: tuple[Rows, ...], neighbours: Sequence[tuple[Rows, ...]], dimension: int
+) -> float:
+    """The least bound that A(q) needs within the union of the A of neighbours, all widened.
+
+    max over u in A_n of min over the neighbours' cones of max over their faces a . u, |u| = 1; the inner two are a max
+    over choices of one face a cone, and for one choice it is the distance of the hull of the faces from A_n's polar.
+    """
+    cones = [unit_rows(faces)[0] for others in neighbours for faces in others]
+    if any(not len(rows) for rows in cones):
+        return 0.0
+    worst = 0.0
+    for faces in alternatives:
+        polar = unit_rows(faces)[0]
+        for choice in product(*(range(len(rows)) for rows in cones)):
+            hull = np.array([rows[k] for rows, k in zip(cones, choice, strict=True)])
+            worst = max(worst, _hull_to_cone(hull, polar, dimension))
+    return worst
+
+
+def _hull_to_cone(hull: Rows, cone: Rows, dimension: int) -> float:
+    """Least |sum l_i h_i - sum c_j d_j| with l, c >= 0 and sum l = 1.
+
+    By nonnegative least squares with the row sum l = 1 added: scaling l and c together leaves the minimiser.
+    """
+    vectors = np.vstack([hull, -cone]).reshape(-1, dimension)
+    ones = np.concatenate([np.ones(len(hull)), np.zeros(len(cone))])
+    target = np.append(np.zeros(dimension), 1.0)
+    weights = nonnegative_least_squares(np.vstack([vectors.T, ones]), target)
+    total = float(weights[: len(hull)].sum())
+    return float(np.linalg.norm(weights @ vectors)) / total if total > 0 else 1.0
 
 
 def _blocks(found: MeasurementSet, columns: slice) -> list[Rows]:
@@ -66,4 +83,9 @@ def _outside(spans: Rows, blocks: Sequence[Rows]) -> float:
 
 def _whole_outside(spans: Rows, rows: Rows) -> float:
     crossed = rows[(rows @ spans.T > 0).any(axis=1)]
-    return max((largest_outside(spans, row) for row in crossed), default=0.0)
+    return max((_largest(spans, row) for row in crossed), default=0.0)
+
+
+def _largest(spans: Rows, row: Vector) -> float:
+    """max of a . s over the unit vectors s of a cone: the length of a's projection onto it; 0 if a leaves it."""
+    return float(np.linalg.norm(nonnegative_least_squares(spans.T, row) @ spans))

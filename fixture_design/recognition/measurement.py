@@ -16,13 +16,16 @@ import numpy as np
 
 from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone, convert_both
-from fixture_design.cones.kernel import nonnegative_least_squares
 from fixture_design.recognition.merging import merged
 from fixture_design.recognition.sample_cones import SampleCones
 from fixture_design.recognition.signals import Signals
 
 #: Samples alone; those between neighbours too; one cone for all of them (as Table 6 has it).
 Interpolation = Literal["none", "neighbours", "hull"]
+
+
+#: Digits to which face vectors of equal cones agree.
+_DIGITS = 9
 
 
 @dataclass(frozen=True)
@@ -82,20 +85,25 @@ def measurement_set(
     Args:
         groups: indices of samples; (k,) alone is the set of one sample.  simplify: whether to merge by Theorem 10.
     """
-    cones: list[PolyhedralConvexCone] = []
     if signals.measure == "displacement":
-        cones = [_from_faces(faces) for alternatives in samples.displacements for faces in alternatives]
-    else:
-        for group in groups:
-            force = force_cone([samples.forces[k] for k in group], signals.force_size)
-            if signals.measure == "force":
-                cones.append(force)
-            else:
-                choices = [faces for k in group for faces in samples.displacements[k]]
-                cones += [_product(force, _from_faces(faces)) for faces in choices]
-    if not simplify:
-        return MeasurementSet(ConeUnion.of(cones))
-    return MeasurementSet(ConeUnion.of(merged(cones)))
+        chosen = sorted({k for group in groups for k in group})
+        return _union([_from_faces(faces) for k in chosen for faces in samples.displacements[k]], simplify)
+    forces = [force_cone([samples.forces[k] for k in group], signals.force_size) for group in groups]
+    if signals.measure == "force":
+        return _union(forces, simplify)
+    known = [tuple(_from_faces(faces) for faces in alternatives) for alternatives in samples.displacements]
+    pairs = [_product(force, known[k][n]) for force, group in zip(forces, groups, strict=True)
+             for k in group for n in range(len(known[k]))]  # fmt: skip
+    return _union(_distinct(pairs), False)
+
+
+def _union(cones: Sequence[PolyhedralConvexCone], simplify: bool) -> MeasurementSet:
+    return MeasurementSet(ConeUnion.of(merged(cones) if simplify else cones))
+
+
+def _distinct(cones: Sequence[PolyhedralConvexCone]) -> list[PolyhedralConvexCone]:
+    """Each cone once, by its digits; Theorem 10 seldom finds anything in products, and takes long."""
+    return list({np.round(oriented_rows(cone), _DIGITS).tobytes(): cone for cone in cones}.values())
 
 
 def force_cone(spans: Sequence[Rows], dimension: int) -> PolyhedralConvexCone:
@@ -118,23 +126,3 @@ def _product(force: PolyhedralConvexCone, displacement: PolyhedralConvexCone) ->
     faces, equalities, spans, lines = (np.vstack(pair) for pair in zip(left, right, strict=True))
     as_faces = PolyhedralConvexCone.from_faces(faces, equalities, dimension=n + m)
     return replace(as_faces, span_form=PolyhedralConvexCone.from_span(spans, lines, dimension=n + m).span_form)
-
-
-def largest_outside(cone: Rows, row: Vector) -> float:
-    """max of a . s over the unit vectors s of span{rows}: the length of a's projection onto the cone; 0 if a leaves it.
-
-    Args:
-        cone: its span vectors, shape (k, d).  row: a, shape (d,).
-    """
-    if not len(cone):
-        return 0.0
-    weights = nonnegative_least_squares(cone.T, row)
-    return float(np.linalg.norm(weights @ cone))
-
-
-def largest_outside_faces(faces: Rows, row: Vector) -> float:
-    """The same over face{rows}: what is left of a without its projection onto the polar."""
-    if not len(faces):
-        return float(np.linalg.norm(row))
-    weights = nonnegative_least_squares(faces.T, row)
-    return float(np.linalg.norm(row - weights @ faces))

@@ -15,12 +15,14 @@ serves. (4-7) has the sign of the reaction; here it is the force on the moving p
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Rows, Vector
+from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.errors import InputError
 
 Measure = Literal["force", "displacement", "both"]
@@ -65,25 +67,28 @@ class Signals:
         """Numbers of a signal."""
         return self.force_size + (self.wrench_size if self.measure != "force" else 0)
 
-    @property
+    @cached_property
     def wrench_scale(self) -> Vector:
         """Factors that make [f; m] the first numbers of the force block."""
         return self._with_length(1 / self.length)
 
-    @property
+    @cached_property
     def twist_scale(self) -> Vector:
         """Factors that make [dx; dtheta] the displacement block."""
         return self._with_length(self.length)
 
-    def signal(self, wrench: Vector | None, twist: Vector | None) -> Vector:
+    def signal(self, wrench: ArrayLike | None, twist: ArrayLike | None, floor: float = 0.0) -> Vector:
         """The signal of a measurement. A block that was not measured, or is zero, is zero: every cone holds that.
+
+        Args:
+            floor: wrenches up to this length are zero [N]; not where a weight is known, which makes zero tell something.
 
         Raises:
             InputError: numbers that do not fit, or are not finite; no force where a classifier needs one.
         """
         blocks = []
         if self.force_size:
-            blocks.append(self._force(self._checked(wrench, "wrench")))
+            blocks.append(self._force(self._checked(wrench, "wrench"), floor))
         if self.measure != "force":
             if self.measure == "both" and twist is None:
                 blocks.append(np.zeros(self.wrench_size))
@@ -100,14 +105,14 @@ class Signals:
         """[-w; W] of the weight's wrench w."""
         return np.append(-wrench * self.wrench_scale, self.weight)
 
-    def _force(self, wrench: Vector) -> Vector:
+    def _force(self, wrench: Vector, floor: float) -> Vector:
         scaled = wrench * self.wrench_scale
-        return _unit(np.append(scaled, self.weight) if self.weight else scaled)
+        return _unit(np.append(scaled, self.weight)) if self.weight else _unit(scaled, floor)
 
     def _with_length(self, factor: float) -> Vector:
         return np.concatenate([np.ones(self.plane), np.full(self.wrench_size - self.plane, factor)])
 
-    def _checked(self, values: Vector | None, name: str) -> Vector:
+    def _checked(self, values: ArrayLike | None, name: str) -> Vector:
         if values is None:
             raise InputError(f"this classifier needs a {name}", expected=f"{self.wrench_size} numbers")
         vector = np.asarray(values, dtype=np.float64)
@@ -118,6 +123,6 @@ class Signals:
         return vector
 
 
-def _unit(vector: Vector) -> Vector:
-    size = float(np.sqrt(vector @ vector))
-    return vector / size if size > NOTHING else np.zeros(len(vector))
+def _unit(vector: Vector, floor: float = 0.0) -> Vector:
+    size = math.sqrt(vector @ vector)
+    return vector / size if size > max(floor, NOTHING) else np.zeros(len(vector))

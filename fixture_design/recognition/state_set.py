@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,13 +13,16 @@ from fixture_design.recognition.checking import displacements_outside, forces_ou
 from fixture_design.recognition.measurement import Interpolation, MeasurementSet, Widening, measurement_set
 from fixture_design.recognition.sample_cones import Physics, SampleCones, sample_cones
 from fixture_design.recognition.signals import Signals
-from fixture_design.recognition.simplices import StateEquations, simplices_of
+from fixture_design.recognition.simplices import Simplices, StateEquations, simplices_of
 
 #: Random starts for denser samples of a state.
 _DENSER = 300
 
 #: Rounds in which samples that stick out are added, and how many at most in each.
 _ROUNDS, _ADDED = 4, 8
+
+#: Simplices next to a sample by whose displacement sets its own is bounded.
+_NEXT = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +42,11 @@ class Recipe:
     seed: int
 
     @property
+    def forces(self) -> Signals:
+        """Signals of forces alone."""
+        return replace(self.signals, measure="force")
+
+    @property
     def spacing(self) -> float:
         return float(np.sqrt(8 * self.accuracy))
 
@@ -54,7 +62,7 @@ def state_set(graph: ContactStateGraph, geometry: ContactGeometry, state: Contac
     if recipe.interpolation != "neighbours":
         groups = [tuple(range(len(pool)))] if recipe.interpolation == "hull" else [(k,) for k in range(len(pool))]
         found = measurement_set(cones, groups, recipe.signals)
-        return _widened(found, cones, recipe)
+        return found.widened(Widening(_largest(_force_outside(found, cones, recipe)), 0.0))
     return _interpolated(geometry, state, cones, recipe)
 
 
@@ -83,19 +91,55 @@ def _interpolated(
     equations = StateEquations.of(geometry, state.contacts)
     chart = chart_of(geometry, state.contacts, pool.q, not state.coincident, recipe.signals)
     chosen = spread(chart.points, recipe.spacing)
-    for last in [False] * _ROUNDS + [True]:
+    for _ in range(_ROUNDS):
         part = pool.taking(chosen)
         simplices = simplices_of(chart, chosen, part.q, equations)
-        found = measurement_set(part, simplices.members, recipe.signals, simplify=last)
-        outside = _outside(found, pool, recipe)
-        beyond = np.flatnonzero(outside.max(axis=0) > recipe.accuracy)
-        if last or not len(beyond):
+        outside = _force_outside(measurement_set(part, simplices.members, recipe.forces, simplify=False), pool, recipe)
+        beyond = np.flatnonzero(outside > recipe.accuracy)
+        if not len(beyond):
             break
-        order = beyond[np.argsort(-outside.max(axis=0)[beyond], kind="stable")]
-        chosen += _apart(chart.points, order, recipe.spacing / 4)[:_ADDED]
+        order = beyond[np.argsort(-outside[beyond], kind="stable")]
+        chosen = chosen + _apart(chart.points, order, recipe.spacing / 4)[:_ADDED]
+    part = pool.taking(chosen)
+    simplices = simplices_of(chart, chosen, part.q, equations)
     found = measurement_set(part, simplices.members, recipe.signals)
     middles = _cones(geometry, state, simplices.middles, recipe)
-    return _widened(found, pool + middles, recipe)
+    widening = Widening(
+        _largest(_force_outside(found, pool + middles, recipe)),
+        _displacements(part, simplices, chart.points, chart.points[chosen], pool, recipe),
+    )
+    return found.widened(widening)
+
+
+def _force_outside(found: MeasurementSet, samples: SampleCones, recipe: Recipe) -> np.ndarray:
+    if recipe.signals.measure == "displacement" and found.cones.dimension == recipe.signals.size:
+        return np.zeros(len(samples))
+    return forces_outside(found, samples, recipe.forces)
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(values.max(initial=0.0))
+
+
+def _displacements(
+    part: SampleCones,
+    simplices: Simplices,
+    everywhere: np.ndarray,
+    points: np.ndarray,
+    pool: SampleCones,
+    recipe: Recipe,
+) -> float:
+    """The bound of displacement sets: of each sample of the pool by the best of the simplices next to it."""
+    if recipe.signals.measure == "force":
+        return 0.0
+    middles = np.array([points[list(members)].mean(axis=0) for members in simplices.members])
+    worst = 0.0
+    for point, alternatives in zip(everywhere, pool.displacements, strict=True):
+        near = np.argsort(((middles - point) ** 2).sum(axis=1), kind="stable")[:_NEXT]
+        groups = [[part.displacements[k] for k in simplices.members[index]] for index in near]
+        size = recipe.signals.wrench_size
+        worst = max(worst, min(displacements_outside(alternatives, group, size) for group in groups))
+    return worst
 
 
 def _apart(points: np.ndarray, order: np.ndarray, distance: float) -> list[int]:
@@ -105,16 +149,3 @@ def _apart(points: np.ndarray, order: np.ndarray, distance: float) -> list[int]:
         if all(np.linalg.norm(points[index] - points[other]) > distance for other in taken):
             taken.append(index)
     return taken
-
-
-def _outside(found: MeasurementSet, samples: SampleCones, recipe: Recipe) -> np.ndarray:
-    """How far samples are outside, of both blocks: shape (2, n)."""
-    signals = recipe.signals
-    none = np.zeros(len(samples))
-    force = none if signals.measure == "displacement" else forces_outside(found, samples, signals)
-    return np.array([force, none if signals.measure == "force" else displacements_outside(found, samples, signals)])
-
-
-def _widened(found: MeasurementSet, samples: SampleCones, recipe: Recipe) -> MeasurementSet:
-    force, displacement = _outside(found, samples, recipe).max(axis=1)
-    return found.widened(Widening(float(force), float(displacement)))
