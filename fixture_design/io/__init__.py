@@ -1,12 +1,14 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
 from fixture_design.io.assembly_file import assembly_from_data, read_assembly
+from fixture_design.io.classifier_file import classifier_to_dict, read_classifier, write_classifier
 from fixture_design.io.csv_export import write_csv
 from fixture_design.io.design_record import design_to_dict
 from fixture_design.io.documents import Document, document_of, line_document, read_bytes, read_document
 from fixture_design.io.graph_file import graph_to_dict, read_graph, write_graph, write_graphml
 from fixture_design.io.json_writer import dumps
 from fixture_design.io.layout_file import layout_from_data, layout_text, read_layout, write_layout
+from fixture_design.io.log_file import read_log
 from fixture_design.io.places import Place
 from fixture_design.io.problems import ContentError
 from fixture_design.io.schemas import json_schema, schema_names
@@ -20,6 +22,7 @@ __all__ = [
     "Document",
     "Place",
     "assembly_from_data",
+    "classifier_to_dict",
     "design_to_dict",
     "document_of",
     "dumps",
@@ -31,13 +34,16 @@ __all__ = [
     "line_document",
     "read_assembly",
     "read_bytes",
+    "read_classifier",
     "read_document",
     "read_graph",
     "read_layout",
+    "read_log",
     "read_task",
     "schema_names",
     "task_of_part",
     "verdict_to_dict",
+    "write_classifier",
     "write_csv",
     "write_graph",
     "write_graphml",

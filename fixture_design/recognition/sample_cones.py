@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from jaxtyping import Float
 
-from fixture_design.arrays import Point, Rows
+from fixture_design.arrays import Point, Rows, Vector
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.control import planar_contacts
 from fixture_design.assembly.planar import PlanarGeometry
@@ -40,12 +41,15 @@ class SampleCones:
     Attributes:
         q: shape (n, c).
         forces: of each the span vectors of F, in the coordinates of the force block; lines as two of them.
+        vectors: of each the contacts' unit normals with their moments, and the weight's wrench where one is known, in the
+            coordinates of the force block without its last, shape (n, m, d): what `chart` calls near.
         displacements: of each the alternatives A_1, A_2, ... of A by their face vectors, in those of the displacement
             block: one, but for two convex apices in one point.
     """
 
     q: np.ndarray
     forces: tuple[Rows, ...]
+    vectors: Float[np.ndarray, "n m d"]
     displacements: tuple[tuple[Rows, ...], ...]
 
     def __len__(self) -> int:
@@ -53,13 +57,15 @@ class SampleCones:
 
     def taking(self, rows: list[int]) -> SampleCones:
         """Some of the samples."""
-        return SampleCones(
-            self.q[rows], tuple(self.forces[k] for k in rows), tuple(self.displacements[k] for k in rows)
-        )
+        forces, displacements = (tuple(kind[k] for k in rows) for kind in (self.forces, self.displacements))
+        return SampleCones(self.q[rows], forces, self.vectors[rows], displacements)
 
     def __add__(self, other: SampleCones) -> SampleCones:
         return SampleCones(
-            np.concatenate([self.q, other.q]), self.forces + other.forces, self.displacements + other.displacements
+            np.concatenate([self.q, other.q]),
+            self.forces + other.forces,
+            np.concatenate([self.vectors, other.vectors]),
+            self.displacements + other.displacements,
         )
 
 
@@ -73,20 +79,21 @@ def sample_cones(
             that of the two wedges, where two convex apices leave an OR, and F = (A_1 u A_2)* balances what either
             alternative balances; in space all pairs count together.
     """
-    if not apart and isinstance(geometry, PlanarGeometry):
-        normals_of = [_branches(planar_contacts(geometry, row)) for row in q]
-    else:
-        chosen = np.array([geometry.names.index(name) for name in contacts], dtype=int)[None]
-        normals = geometry.equations(q, chosen).face_vectors[..., : signals.plane]
-        normals_of = [[pair] for pair in zip(geometry.arms(q, chosen), normals, strict=True)]
-    forces, displacements = [], []
-    for row, R, branches in zip(q, geometry.rotations(q), normals_of, strict=True):
+    chosen = np.array([geometry.names.index(name) for name in contacts], dtype=int)[None]
+    normals = geometry.equations(q, chosen).face_vectors[..., : signals.plane]
+    pairs = list(zip(geometry.arms(q, chosen), normals, strict=True))
+    wedges = not apart and isinstance(geometry, PlanarGeometry)
+    forces, vectors, displacements = [], [], []
+    for row, R, (points, outward) in zip(q, geometry.rotations(q), pairs, strict=True):
+        branches = _branches(planar_contacts(geometry, row)) if wedges else [(points, outward)]
         turn = np.eye(signals.wrench_size) if signals.axes == "fixed" else _turning(R)
-        spans = [_force_spans(points, normals, physics) @ turn for points, normals in branches]
-        forces.append(_with_weight(signals.force_rows(_common(spans, signals.wrench_size)), R, turn, signals, physics))
-        faces = [face_vectors(points, normals) @ turn / signals.twist_scale for points, normals in branches]
-        displacements.append(tuple(faces))
-    return SampleCones(q, tuple(forces), tuple(displacements))
+        spans = _common([_force_spans(*branch, physics) @ turn for branch in branches], signals.wrench_size)
+        weight = _weight(R, physics)[None] @ turn if signals.weight else np.zeros((0, signals.wrench_size))
+        forces.append(np.vstack([signals.force_rows(spans), *(signals.weight_row(some)[None] for some in weight)]))
+        vectors.append(np.vstack([face_vectors(points, outward) @ turn, weight]) * signals.wrench_scale)
+        displacements.append(tuple(face_vectors(*branch) @ turn / signals.twist_scale for branch in branches))
+    shape = (len(q), len(contacts) + (signals.weight > 0), signals.wrench_size)
+    return SampleCones(q, tuple(forces), np.array(vectors).reshape(shape), tuple(displacements))
 
 
 def _turning(R: np.ndarray) -> np.ndarray:
@@ -123,10 +130,7 @@ def _common(spans: list[Rows], dimension: int) -> Rows:
     return np.vstack([both.spans, both.lines, -both.lines])
 
 
-def _with_weight(rows: Rows, R: np.ndarray, turn: np.ndarray, signals: Signals, physics: Physics) -> Rows:
-    """The span vectors with [-w(q); W], where a weight is known."""
-    if not signals.weight:
-        return rows
+def _weight(R: np.ndarray, physics: Physics) -> Vector:
+    """The weight's wrench in fixed axes."""
     arm = R @ physics.center
-    wrench = np.concatenate([physics.force, cross(arm[None], physics.force[None])[0]]) @ turn
-    return np.vstack([rows, signals.weight_row(wrench)])
+    return np.concatenate([physics.force, cross(arm[None], physics.force[None])[0]])

@@ -120,9 +120,7 @@ def _nearest(points: np.ndarray, r: int) -> list[tuple[int, ...]]:
     return sorted({tuple(sorted(row)) for row in np.argsort(squares, axis=1, kind="stable")[:, : r + 1].tolist()})
 
 
-def _middles(
-    tried: list[tuple[int, ...]], q: np.ndarray, equations: StateEquations
-) -> tuple[np.ndarray, np.ndarray]:
+def _middles(tried: list[tuple[int, ...]], q: np.ndarray, equations: StateEquations) -> tuple[np.ndarray, np.ndarray]:
     """Barycentres in the state, and which of the simplices have one."""
     if not tried:
         return q[:0], np.zeros(0, dtype=bool)

@@ -44,9 +44,7 @@ class Stacked:
                 rows.append(faces)
                 bounds.append(np.where(of_force, both[0], both[1]))
                 count += len(faces)
-        return cls(
-            np.ascontiguousarray(np.vstack(rows)), np.concatenate(bounds), np.array(cones), np.array(states)
-        )
+        return cls(np.ascontiguousarray(np.vstack(rows)), np.concatenate(bounds), np.array(cones), np.array(states))
 
     def margins(self, signal: Vector) -> Weights:
         """For each state the best of its cones: the least of bound - a . s; not negative if the signal is inside."""

@@ -51,7 +51,9 @@ class Recipe:
         return float(np.sqrt(8 * self.accuracy))
 
 
-def state_set(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe) -> MeasurementSet:
+def state_set(
+    graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe
+) -> MeasurementSet:
     """S_i of a state, widened so that it holds the sets of all samples there are, and of denser ones.
 
     The samples are those of the state and of all states with more contacts, where the same contacts hold: its closure
@@ -66,11 +68,9 @@ def state_set(graph: ContactStateGraph, geometry: ContactGeometry, state: Contac
     return _interpolated(geometry, state, cones, recipe)
 
 
-def _pool(
-    graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe
-) -> np.ndarray:
+def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe) -> np.ndarray:
     """Configurations to choose from: the graph's samples alone, but with interpolation the closure's and denser ones."""
-    if recipe.interpolation != "neighbours" or not state.contacts:
+    if recipe.interpolation != "neighbours":
         return state.samples
     equations = StateEquations.of(geometry, state.contacts)
     rng = np.random.default_rng(recipe.seed)
@@ -84,12 +84,10 @@ def _cones(geometry: ContactGeometry, state: ContactState, q: np.ndarray, recipe
     return sample_cones(geometry, state.contacts, q, not state.coincident, recipe.signals, recipe.physics)
 
 
-def _interpolated(
-    geometry: ContactGeometry, state: ContactState, pool: SampleCones, recipe: Recipe
-) -> MeasurementSet:
+def _interpolated(geometry: ContactGeometry, state: ContactState, pool: SampleCones, recipe: Recipe) -> MeasurementSet:
     """Spread samples, their simplices, and the samples that stick out added until few do."""
     equations = StateEquations.of(geometry, state.contacts)
-    chart = chart_of(geometry, state.contacts, pool.q, not state.coincident, recipe.signals)
+    chart = chart_of(geometry, state.contacts, pool, not state.coincident)
     chosen = spread(chart.points, recipe.spacing)
     for _ in range(_ROUNDS):
         part = pool.taking(chosen)
