@@ -99,19 +99,21 @@ def _record(known: Classifier, rows: Log, answers: list[Recognition]) -> dict[st
 def _print(known: Classifier, rows: Log, answers: list[Recognition]) -> None:
     """Rows with the same answer in one line."""
     row = 0
-    for (states, expected, told), same in groupby(answers, key=lambda a: (a.states, a.expected, a.told)):
-        count = len(list(same))
+    for _, group in groupby(answers, key=lambda a: (a.states, a.expected, a.told)):
+        same = list(group)
+        count = len(same)
         where = f"row {row + 1}" if count == 1 else f"rows {row + 1} to {row + count}"
-        typer.echo(f"{where}, t = {rows.times[row]:g} s: {_words(known, states, expected, told)}")
+        typer.echo(f"{where}, t = {rows.times[row]:g} s: {_words(known, same[0])}")
         row += count
 
 
-def _words(known: Classifier, states: tuple[str, ...], expected: bool, told: bool) -> str:
-    if not told:
+def _words(known: Classifier, answer: Recognition) -> str:
+    states = answer.states
+    if not answer.told:
         return f"nothing was measured that tells; still possible: {', '.join(states)}"
     if not states:
         return "no state fits"
-    surprise = "" if expected else ", which no known transition leads to"
+    surprise = "" if answer.expected else ", which no known transition leads to"
     if len(states) > 1:
         return f"{len(states)} states are possible: {', '.join(states)}{surprise}"
     contacts = "; ".join(known.state(states[0]).contacts) or "no contact"

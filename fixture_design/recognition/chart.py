@@ -2,8 +2,8 @@
 
 Convex sums interpolate span vectors, so two configurations are near if their span vectors are. In the plane a contact's
 are [n; l], n at some angle and l a lever: the angle of n and that of the whole vector above the plane of forces,
-atan(l / L), are coordinates in which the state is flat. In space the unit vectors themselves are taken. A state with r freedoms that
-span vectors notice needs simplices of r + 1 samples.
+atan(l / L), are coordinates in which the state is flat. In space the unit vectors themselves are taken. A state with r
+freedoms that span vectors notice needs simplices of r + 1 samples.
 """
 
 from __future__ import annotations

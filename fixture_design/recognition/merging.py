@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fixture_design.arrays import Rows
+from fixture_design.arrays import Mask, Rows
 from fixture_design.cones import PolyhedralConvexCone, convert_both, convex_sum
 from fixture_design.tolerances import DEFAULT, Tolerances
 
@@ -56,10 +56,11 @@ def _generators(cone: PolyhedralConvexCone) -> Rows:
     return np.vstack([cone.spans, cone.lines, -cone.lines])
 
 
-def _inside(vectors: Rows, cone: PolyhedralConvexCone, tolerances: Tolerances) -> np.ndarray:
+def _inside(vectors: Rows, cone: PolyhedralConvexCone, tolerances: Tolerances) -> Mask:
     """Which vectors, of length 2 at most, are in a cone with unit faces."""
     within = (vectors @ cone.faces.T <= tolerances.tie).all(axis=1)
-    return within & (np.abs(vectors @ cone.equalities.T) <= tolerances.tie).all(axis=1)
+    flat = (np.abs(vectors @ cone.equalities.T) <= tolerances.tie).all(axis=1)
+    return np.logical_and(within, flat)
 
 
 def _whole(total: PolyhedralConvexCone, parts: tuple[PolyhedralConvexCone, ...], tolerances: Tolerances) -> bool:

@@ -41,8 +41,8 @@ class SampleCones:
     Attributes:
         q: shape (n, c).
         forces: of each the span vectors of F, in the coordinates of the force block; lines as two of them.
-        vectors: of each the contacts' unit normals with their moments, and the weight's wrench where one is known, in the
-            coordinates of the force block without its last, shape (n, m, d): what `chart` calls near.
+        vectors: of each the contacts' unit normals with their moments, and the weight's wrench where one is known,
+            scaled as forces are, shape (n, m, d): what `chart` calls near.
         displacements: of each the alternatives A_1, A_2, ... of A by their face vectors, in those of the displacement
             block: one, but for two convex apices in one point.
     """
@@ -57,8 +57,8 @@ class SampleCones:
 
     def taking(self, rows: list[int]) -> SampleCones:
         """Some of the samples."""
-        forces, displacements = (tuple(kind[k] for k in rows) for kind in (self.forces, self.displacements))
-        return SampleCones(self.q[rows], forces, self.vectors[rows], displacements)
+        forces = tuple(self.forces[k] for k in rows)
+        return SampleCones(self.q[rows], forces, self.vectors[rows], tuple(self.displacements[k] for k in rows))
 
     def __add__(self, other: SampleCones) -> SampleCones:
         return SampleCones(
@@ -82,10 +82,10 @@ def sample_cones(
     chosen = np.array([geometry.names.index(name) for name in contacts], dtype=int)[None]
     normals = geometry.equations(q, chosen).face_vectors[..., : signals.plane]
     pairs = list(zip(geometry.arms(q, chosen), normals, strict=True))
-    wedges = not apart and isinstance(geometry, PlanarGeometry)
+    wedges = geometry if not apart and isinstance(geometry, PlanarGeometry) else None
     forces, vectors, displacements = [], [], []
     for row, R, (points, outward) in zip(q, geometry.rotations(q), pairs, strict=True):
-        branches = _branches(planar_contacts(geometry, row)) if wedges else [(points, outward)]
+        branches = [(points, outward)] if wedges is None else _branches(planar_contacts(wedges, row))
         turn = np.eye(signals.wrench_size) if signals.axes == "fixed" else _turning(R)
         spans = _common([_force_spans(*branch, physics) @ turn for branch in branches], signals.wrench_size)
         weight = _weight(R, physics)[None] @ turn if signals.weight else np.zeros((0, signals.wrench_size))

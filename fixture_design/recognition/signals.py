@@ -81,7 +81,7 @@ class Signals:
         """The signal of a measurement. A block that was not measured, or is zero, is zero: every cone holds that.
 
         Args:
-            floor: wrenches up to this length are zero [N]; not where a weight is known, which makes zero tell something.
+            floor: wrenches up to this length are zero [N]; not where a weight is known: then zero tells something.
 
         Raises:
             InputError: numbers that do not fit, or are not finite; no force where a classifier needs one.

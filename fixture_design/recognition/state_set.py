@@ -69,7 +69,7 @@ def state_set(
 
 
 def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe) -> np.ndarray:
-    """Configurations to choose from: the graph's samples alone, but with interpolation the closure's and denser ones."""
+    """Configurations to choose from: the graph's samples; with interpolation the closure's and denser ones too."""
     if recipe.interpolation != "neighbours":
         return state.samples
     equations = StateEquations.of(geometry, state.contacts)

@@ -18,7 +18,7 @@ class Tables:
 
     A measurement passes a group if a . s <= bound for all its faces; a transition is possible if one of its groups is
     passed. Faces of a group are ``chosen[group_start[g] : group_start[g + 1]]``, groups of a transition
-    ``transition_start[t] : transition_start[t + 1]``, transitions of a source ``source_start[i] : source_start[i + 1]``.
+    ``transition_start[t] : transition_start[t + 1]``, transitions of a source likewise by ``source_start``.
 
     Attributes:
         rows: unit face vectors a, of the signal's numbers, shape (m, k).  bounds: shape (m,).
