@@ -114,7 +114,7 @@ def _words(known: Classifier, answer: Recognition) -> str:
     if not states:
         return "no state fits"
     surprise = "" if answer.expected else ", which no known transition leads to"
-    if len(states) > 1:
+    if answer.state is None:
         return f"{len(states)} states are possible: {', '.join(states)}{surprise}"
-    contacts = "; ".join(known.state(states[0]).contacts) or "no contact"
-    return f"{states[0]} ({contacts}){surprise}"
+    contacts = "; ".join(known.state(answer.state).contacts) or "no contact"
+    return f"{answer.state} ({contacts}){surprise}"

@@ -19,6 +19,7 @@ from fixture_design.cones import ConeUnion, PolyhedralConvexCone, convert_both
 from fixture_design.recognition.merging import merged
 from fixture_design.recognition.sample_cones import SampleCones
 from fixture_design.recognition.signals import Signals
+from fixture_design.tolerances import DEFAULT
 
 #: Samples alone; those between neighbours too; one cone for all of them (as Table 6 has it).
 Interpolation = Literal["none", "neighbours", "hull"]
@@ -56,7 +57,7 @@ class MeasurementSet:
 
     def contains(self, signal: ArrayLike, noise: float = 0.0) -> bool:
         """Whether a signal, unit or with unit blocks, is in the set, widened. `Classifier` asks many sets at once."""
-        return self.outside(np.asarray(signal, dtype=np.float64)) <= max(self._bounds()) + noise
+        return self.outside(np.asarray(signal, dtype=np.float64)) <= max(self._bounds()) + noise + DEFAULT.tie
 
     def outside(self, signal: Vector) -> float:
         """The least over the cones of the largest a . s: how far outside a signal is; negative inside."""

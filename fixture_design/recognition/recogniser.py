@@ -45,12 +45,12 @@ class Recogniser:
     def step(self, wrench: ArrayLike | None, twist: ArrayLike | None = None) -> Recogniser:
         """After one more sample: the states that it leaves of those possible before and their successors.
 
-        Where it leaves none, all states are asked (`Recognition.expected` is False); where none at all fits, or the
-        sample tells nothing, what was possible before and may have followed stays possible.
+        Where it leaves none, all states are asked (`Recognition.expected` is False); where none at all fits, what was
+        possible before stays. A sample that tells nothing leaves all successors possible.
 
         Raises: as `Classifier.recognize`.
         """
         answer = self.classifier.recognize(wrench, twist, previous=self.possible)
-        if answer.told and answer.states:
+        if answer.states:
             return replace(self, possible=answer.states, latest=answer)
         return replace(self, latest=answer)

@@ -9,6 +9,7 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Rows, Vector, Weights
 from fixture_design.recognition.measurement import MeasurementSet, oriented_rows
+from fixture_design.tolerances import DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,8 @@ class Stacked:
         count = 0
         for found in sets:
             states.append(len(cones))
-            both = found.widening.force + force, found.widening.displacement + displacement
+            # a tie is inside: sums of products leave 1e-16 where a zero is
+            both = found.widening.force + force + DEFAULT.tie, found.widening.displacement + displacement + DEFAULT.tie
             for cone in found.cones:
                 faces = oriented_rows(cone)
                 faces = faces if len(faces) else np.zeros((1, cone.dimension))

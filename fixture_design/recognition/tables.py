@@ -10,6 +10,7 @@ from fixture_design.arrays import ArrayLike, Indices, Rows, Weights
 from fixture_design.errors import InputError
 from fixture_design.recognition.classifier import Classifier
 from fixture_design.recognition.measurement import oriented_rows
+from fixture_design.tolerances import DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +96,9 @@ class _Growing:
                 row = self._faces[state, cone][face]
                 of_force = bool(np.abs(row[: self._force_size]).max(initial=0.0) > 0)
                 widening = self._widening[state]
+                block = "force" if of_force else "displacement"
                 self.rows.append(row)
-                self.bounds.append(
-                    widening.force + self._noise.force if of_force else widening.displacement + self._noise.displacement
-                )
+                self.bounds.append(getattr(widening, block) + getattr(self._noise, block) + DEFAULT.tie)
             self.chosen.append(self._known[key])
         self.group_start.append(len(self.chosen))
 
