@@ -40,7 +40,7 @@ def classifier(
     interpolation: Annotated[
         Literal["neighbours", "none", "hull"], typer.Option("--interpolation", help="What is between samples.")
     ] = "neighbours",
-    accuracy: Annotated[float, typer.Option("--accuracy", help="Of the interpolation (sine of an angle).")] = 0.01,
+    accuracy: Annotated[float, typer.Option("--accuracy", help="Of the interpolation (sine of an angle).")] = 0.005,
     fewest: Annotated[bool, typer.Option("--fewest", help="The smallest groups of discriminants.")] = False,
     seed: Annotated[int, typer.Option("--seed", help="Of the samples that sets are checked on.")] = 0,
     c_file: Annotated[Path | None, typer.Option("--c", help="Discriminants as C code.", metavar="OUT.c")] = None,

@@ -31,7 +31,7 @@ def build_classifier(
     gravity: ArrayLike | None = None,
     noise: Noise | None = None,
     interpolation: Interpolation = "neighbours",
-    accuracy: float = 0.01,
+    accuracy: float = 0.005,
     discriminants: bool = True,
     fewest: bool = False,
     length: float | None = None,

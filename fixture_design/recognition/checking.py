@@ -8,7 +8,6 @@ from itertools import product
 import numpy as np
 
 from fixture_design.arrays import Rows, Vector, Weights
-from fixture_design.cones.cone import unit_rows
 from fixture_design.cones.kernel import nonnegative_least_squares
 from fixture_design.recognition.measurement import MeasurementSet, oriented_rows
 from fixture_design.recognition.sample_cones import SampleCones
@@ -25,7 +24,11 @@ def forces_outside(found: MeasurementSet, samples: SampleCones, signals: Signals
     """
     size = signals.force_size
     blocks = _blocks(found, slice(0, size))
-    return np.array([_outside(unit_rows(rows)[0], blocks) for rows in samples.forces])
+    found_out = np.zeros(len(samples))
+    for rows in {len(some) for some in samples.forces}:
+        some = [k for k, spans in enumerate(samples.forces) if len(spans) == rows]
+        found_out[some] = _outside(np.array([samples.forces[k] for k in some]).reshape(len(some), rows, size), blocks)
+    return found_out
 
 
 def displacements_outside(
@@ -36,12 +39,11 @@ def displacements_outside(
     max over u in A_n of min over the neighbours' cones of max over their faces a . u, |u| = 1; the inner two are a max
     over choices of one face a cone, and for one choice it is the distance of the hull of the faces from A_n's polar.
     """
-    cones = [unit_rows(faces)[0] for others in neighbours for faces in others]
+    cones = [faces for others in neighbours for faces in others]
     if any(not len(rows) for rows in cones):
         return 0.0
     worst = 0.0
-    for faces in alternatives:
-        polar = unit_rows(faces)[0]
+    for polar in alternatives:
         for choice in product(*(range(len(rows)) for rows in cones)):
             hull = np.array([rows[k] for rows, k in zip(cones, choice, strict=True)])
             worst = max(worst, _hull_to_cone(hull, polar, dimension))
@@ -71,14 +73,18 @@ def _blocks(found: MeasurementSet, columns: slice) -> list[Rows]:
     return list(blocks.values())
 
 
-def _outside(spans: Rows, blocks: Sequence[Rows]) -> float:
-    if not len(spans):
-        return 0.0
-    least = np.array([float((rows @ spans.T).max(initial=-1.0)) for rows in blocks])
-    if least.min() <= 0.0:
-        return 0.0
-    best = np.argsort(least, kind="stable")[:_CANDIDATES]
-    return min(_whole_outside(spans, blocks[k]) for k in best)
+def _outside(spans: np.ndarray, blocks: Sequence[Rows]) -> Weights:
+    """Of n cones with as many span vectors, shape (n, k, d)."""
+    count, rows, size = spans.shape
+    if not rows:
+        return np.zeros(count)
+    flat = spans.reshape(-1, size)
+    least = np.array([(flat @ block.T).reshape(count, -1).max(axis=1, initial=-1.0) for block in blocks])
+    worst = np.zeros(count)
+    for k in np.flatnonzero(least.min(axis=0) > 0.0):
+        best = np.argsort(least[:, k], kind="stable")[:_CANDIDATES]
+        worst[k] = min(_whole_outside(spans[k], blocks[b]) for b in best)
+    return worst
 
 
 def _whole_outside(spans: Rows, rows: Rows) -> float:

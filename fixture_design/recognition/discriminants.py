@@ -46,12 +46,12 @@ def discriminants(rows: Rows, other: Against, tolerances: Tolerances = DEFAULT) 
     """D(S_i, S_j) of one cone each (4-16): the faces of S_i that tell it from S_j.
 
     Args:
-        rows: face vectors of S_i, shape (m, d), in the order in which they are tried.
+        rows: face vectors of S_i, shape (m, d), of any length but zero, in the order in which they are tried.
 
     Returns:
         those that stay. Any s in S_j with a . s <= 0 for all of them is in S_i; every s in S_i passes them.
     """
-    unit, where = unit_rows(rows)
+    unit = rows / np.linalg.norm(rows, axis=1, keepdims=True)
     products = unit @ other.generators.T
     # a face that none of S_j's span vectors crosses is in S_j*
     kept = [k for k in range(len(unit)) if (products[k] > tolerances.tie).any()]
@@ -62,7 +62,7 @@ def discriminants(rows: Rows, other: Against, tolerances: Tolerances = DEFAULT) 
             continue
         if in_cone_of(unit[k], np.vstack([unit[others], other.faces]), tolerances):
             kept = others
-    return tuple(np.flatnonzero(where)[kept].tolist())
+    return tuple(kept)
 
 
 def discriminating(first: MeasurementSet, second: MeasurementSet) -> tuple[Faces, ...]:

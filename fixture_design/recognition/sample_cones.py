@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from jaxtyping import Float
 
-from fixture_design.arrays import Point, Rows, Vector
+from fixture_design.arrays import Point, Rows
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.control import planar_contacts
 from fixture_design.assembly.planar import PlanarGeometry
@@ -40,11 +40,11 @@ class SampleCones:
 
     Attributes:
         q: shape (n, c).
-        forces: of each the span vectors of F, in the coordinates of the force block; lines as two of them.
+        forces: of each the unit span vectors of F, in the coordinates of the force block; lines as two of them.
         vectors: of each the contacts' unit normals with their moments, and the weight's wrench where one is known,
             scaled as forces are, shape (n, m, d): what `chart` calls near.
-        displacements: of each the alternatives A_1, A_2, ... of A by their face vectors, in those of the displacement
-            block: one, but for two convex apices in one point.
+        displacements: of each the alternatives A_1, A_2, ... of A by their unit face vectors, in the coordinates of the
+            displacement block: one, but for two convex apices in one point.
     """
 
     q: np.ndarray
@@ -81,29 +81,63 @@ def sample_cones(
     """
     chosen = np.array([geometry.names.index(name) for name in contacts], dtype=int)[None]
     normals = geometry.equations(q, chosen).face_vectors[..., : signals.plane]
-    pairs = list(zip(geometry.arms(q, chosen), normals, strict=True))
-    wedges = geometry if not apart and isinstance(geometry, PlanarGeometry) else None
-    forces, vectors, displacements = [], [], []
-    for row, R, (points, outward) in zip(q, geometry.rotations(q), pairs, strict=True):
-        branches = [(points, outward)] if wedges is None else _branches(planar_contacts(wedges, row))
-        turn = np.eye(signals.wrench_size) if signals.axes == "fixed" else _turning(R)
-        spans = _common([_force_spans(*branch, physics) @ turn for branch in branches], signals.wrench_size)
-        weight = _weight(R, physics)[None] @ turn if signals.weight else np.zeros((0, signals.wrench_size))
-        forces.append(np.vstack([signals.force_rows(spans), *(signals.weight_row(some)[None] for some in weight)]))
-        vectors.append(np.vstack([face_vectors(points, outward) @ turn, weight]) * signals.wrench_scale)
-        displacements.append(tuple(face_vectors(*branch) @ turn / signals.twist_scale for branch in branches))
-    shape = (len(q), len(contacts) + (signals.weight > 0), signals.wrench_size)
-    return SampleCones(q, tuple(forces), np.array(vectors).reshape(shape), tuple(displacements))
+    arms, R = geometry.arms(q, chosen), geometry.rotations(q)
+    turns = np.eye(signals.wrench_size)[None].repeat(len(q), axis=0) if signals.axes == "fixed" else _turnings(R)
+    weights = _weights(R, physics, turns) if signals.weight else None
+    rows = _wrenches(arms, normals) @ turns
+    vectors = (rows if weights is None else np.concatenate([rows, weights[:, None]], axis=1)) * signals.wrench_scale
+    if not apart and isinstance(geometry, PlanarGeometry):
+        branches = [_branches(planar_contacts(geometry, row)) for row in q]
+        spans = [_common([_force_spans(*branch, physics) for branch in some], signals.wrench_size) for some in branches]
+        faces = [[face_vectors(*branch) for branch in some] for some in branches]
+    else:
+        spans = list(_edges(arms, normals, physics))
+        faces = [[some] for some in _wrenches(arms, normals)]
+    forces = [_unit(signals.force_rows(some @ turn)) for some, turn in zip(spans, turns, strict=True)]
+    if weights is not None:
+        lifted = (_unit(signals.weight_row(weight)[None]) for weight in weights)
+        forces = [np.vstack(pair) for pair in zip(forces, lifted, strict=True)]
+    displacements = [
+        tuple(_unit(one @ turn / signals.twist_scale) for one in some) for some, turn in zip(faces, turns, strict=True)
+    ]
+    return SampleCones(q, tuple(forces), vectors, tuple(displacements))
 
 
-def _turning(R: np.ndarray) -> np.ndarray:
-    """Rows times this are in the part's axes; a planar moment stays."""
-    plane = len(R)
-    turn = np.eye(3 * (plane - 1))
-    turn[:plane, :plane] = R
+def _unit(rows: Rows) -> Rows:
+    """Rows of length one; none of them is zero."""
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+
+
+def _wrenches(arms: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """d = [n; x X n] (2-5) of n samples and m contacts, shape (n, m, d)."""
+    count, contacts, plane = arms.shape
+    rows = face_vectors(arms.reshape(-1, plane), normals.reshape(-1, plane))
+    return rows.reshape(count, contacts, 3 * (plane - 1))
+
+
+def _edges(arms: np.ndarray, normals: np.ndarray, physics: Physics) -> np.ndarray:
+    """Wrenches that contacts balance, shape (n, k, d): d, or those of the edges of friction cones (2-79), (2-80)."""
+    if not physics.friction or not normals.size:
+        return _wrenches(arms, normals)
+    count, _, plane = arms.shape
+    if plane == 2:
+        units = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+        across = physics.friction * np.stack([-units[..., 1], units[..., 0]], axis=-1)
+        return _wrenches(
+            np.repeat(arms, 2, axis=1), np.stack([units - across, units + across], axis=2).reshape(count, -1, 2)
+        )
+    edges = [friction_edges(normal, physics.friction, physics.edges, "outer") for normal in normals.reshape(-1, plane)]
+    return _wrenches(np.repeat(arms, physics.edges, axis=1), np.concatenate(edges).reshape(count, -1, plane))
+
+
+def _turnings(R: np.ndarray) -> np.ndarray:
+    """Rows times these are in the part's axes, shape (n, d, d); a planar moment stays."""
+    plane = R.shape[1]
+    turns = np.eye(3 * (plane - 1))[None].repeat(len(R), axis=0)
+    turns[:, :plane, :plane] = R
     if plane == 3:
-        turn[3:, 3:] = R
-    return turn
+        turns[:, 3:, 3:] = R
+    return turns
 
 
 def _branches(contacts: tuple[Contact, ...]) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -114,11 +148,8 @@ def _branches(contacts: tuple[Contact, ...]) -> list[tuple[np.ndarray, np.ndarra
 
 
 def _force_spans(points: np.ndarray, normals: np.ndarray, physics: Physics) -> Rows:
-    """Wrenches that contacts balance: d, or those of the edges of friction cones (2-79), (2-80)."""
-    if not len(points) or not physics.friction:
-        return face_vectors(points, normals)
-    edges = [friction_edges(normal, physics.friction, physics.edges, "outer") for normal in normals]
-    return face_vectors(np.repeat(points, [len(some) for some in edges], axis=0), np.concatenate(edges))
+    """The same of one sample, shape (k, d)."""
+    return _edges(points[None], normals[None], physics)[0]
 
 
 def _common(spans: list[Rows], dimension: int) -> Rows:
@@ -130,7 +161,8 @@ def _common(spans: list[Rows], dimension: int) -> Rows:
     return np.vstack([both.spans, both.lines, -both.lines])
 
 
-def _weight(R: np.ndarray, physics: Physics) -> Vector:
-    """The weight's wrench in fixed axes."""
-    arm = R @ physics.center
-    return np.concatenate([physics.force, cross(arm[None], physics.force[None])[0]])
+def _weights(R: np.ndarray, physics: Physics, turns: np.ndarray) -> np.ndarray:
+    """The weight's wrench at every sample, shape (n, d)."""
+    arms = R @ physics.center
+    forces = np.repeat(physics.force[None], len(R), axis=0)
+    return (np.concatenate([forces, cross(arms, forces)], axis=1)[:, None] @ turns)[:, 0]

@@ -15,11 +15,14 @@ from fixture_design.recognition.sample_cones import Physics, SampleCones, sample
 from fixture_design.recognition.signals import Signals
 from fixture_design.recognition.simplices import Simplices, StateEquations, simplices_of
 
-#: Random starts for denser samples of a state.
-_DENSER = 300
+#: Random starts for denser samples of a state; of one with two apices in one point, whose contacts are found one by one.
+_DENSER, _DENSER_COINCIDENT = 300, 50
 
 #: Rounds in which samples that stick out are added, and how many at most in each.
 _ROUNDS, _ADDED = 4, 8
+
+#: Configurations between those that were checked may be further outside by this factor [-].
+_ALLOWANCE = 1.2
 
 #: Simplices next to a sample by whose displacement sets its own is bounded.
 _NEXT = 3
@@ -74,7 +77,7 @@ def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactSta
         return state.samples
     equations = StateEquations.of(geometry, state.contacts)
     rng = np.random.default_rng(recipe.seed)
-    denser, _ = equations.onto(geometry.random(rng, _DENSER))
+    denser, _ = equations.onto(geometry.random(rng, _DENSER_COINCIDENT if state.coincident else _DENSER))
     tighter = [other.samples for other in graph.states if set(state.contacts) < set(other.contacts)]
     # two apices in one point are one contact with clauses of its own; what more touches is not that contact's
     return np.concatenate([state.samples, denser, *([] if state.coincident else tighter)])
@@ -116,7 +119,7 @@ def _force_outside(found: MeasurementSet, samples: SampleCones, recipe: Recipe) 
 
 
 def _largest(values: np.ndarray) -> float:
-    return float(values.max(initial=0.0))
+    return _ALLOWANCE * float(values.max(initial=0.0))
 
 
 def _displacements(
@@ -137,7 +140,7 @@ def _displacements(
         groups = [[part.displacements[k] for k in simplices.members[index]] for index in near]
         size = recipe.signals.wrench_size
         worst = max(worst, min(displacements_outside(alternatives, group, size) for group in groups))
-    return worst
+    return _ALLOWANCE * worst
 
 
 def _apart(points: np.ndarray, order: np.ndarray, distance: float) -> list[int]:

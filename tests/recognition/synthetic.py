@@ -1,7 +1,7 @@
 """Forces that contacts may be loaded with, made here from plain geometry: nothing of the package but its graph.
 
-A configuration of a state is a random one that its contact equations were solved for (`assembly`, tested there); normals
-and levers are worked out here again, contact forces are random in their friction cones, and noise is a random vector.
+A configuration of a state is a random one that its contact equations were solved for (`assembly`, tested there);
+normals and levers are worked out here again, contact forces are random in their friction cones, noise is random too.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def contact_of(name: str, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wrench_at(q: np.ndarray, contacts: tuple[str, ...], friction: float, rng: np.random.Generator) -> np.ndarray:
-    """What is applied to the peg while random contact forces hold it: normal ones of random size, friction within mu."""
+    """What is applied to the peg while random contact forces hold it: normal ones of any size, friction within mu."""
     total = np.zeros(3)
     for name in contacts:
         x, n = contact_of(name, q)
@@ -150,7 +150,11 @@ class TrueSets:
 
 
 #: The facets of the peg: a point, a unit vector along, and from where to where.
-FACET_LINES = {"facet 2": ((-1.0, 0.0), (0.0, 1.0)), "facet 3": ((0.0, 0.0), (1.0, 0.0)), "facet 4": ((1.0, 0.0), (0.0, 1.0))}
+FACET_LINES = {
+    "facet 2": ((-1.0, 0.0), (0.0, 1.0)),
+    "facet 3": ((0.0, 0.0), (1.0, 0.0)),
+    "facet 4": ((1.0, 0.0), (0.0, 1.0)),
+}
 FACET_ENDS = {"facet 2": (0.0, 30.0), "facet 3": (-1.0, 1.0), "facet 4": (0.0, 30.0)}
 
 
