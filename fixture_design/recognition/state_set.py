@@ -15,7 +15,7 @@ from fixture_design.recognition.sample_cones import Physics, SampleCones, sample
 from fixture_design.recognition.signals import Signals
 from fixture_design.recognition.simplices import Simplices, StateEquations, simplices_of
 
-#: Random starts for denser samples of a state; of one with two apices in one point, whose contacts are found one by one.
+#: Random starts for denser samples of a state; with two apices in one point, where contacts are found one by one.
 _DENSER, _DENSER_COINCIDENT = 300, 50
 
 #: Rounds in which samples that stick out are added, and how many at most in each.

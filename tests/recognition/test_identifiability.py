@@ -24,13 +24,14 @@ def test_without_noise_the_answer_is_right_and_near_the_limit(
 ) -> None:
     classifier: Classifier = request.getfixturevalue("with_friction" if friction else "frictionless")
     rng = np.random.default_rng(1)
-    samples = measured(apart, rng, 15, friction)
-    truth = TrueSets.of(apart, rng, 800, friction)
-    assert len(samples) > 250
+    samples = measured(apart, rng, 10, friction)
+    truth = TrueSets.of(apart, rng, 400, friction)
+    assert len(samples) > 180
     assert in_answer(classifier, samples) >= 0.99
-    limit = np.mean([len(truth.states(some.wrench)) for some in samples])
+    possible = [truth.states(some.wrench) for some in samples]
+    limit = np.mean([len(states) for states in possible])
     answers = np.mean([len(classifier.recognize(some.wrench).states) for some in samples])
-    assert np.mean([some.state in truth.states(some.wrench) for some in samples]) > 0.98  # the limit is one
+    assert np.mean([some.state in states for some, states in zip(samples, possible, strict=True)]) > 0.98
     assert answers <= 1.1 * limit, (answers, limit)
 
 
@@ -38,7 +39,7 @@ def test_with_noise_the_true_state_is_in_the_answer(apart: ContactStateGraph, wi
     samples = measured(apart, np.random.default_rng(2), 15, friction=0.2, noise=0.05)
     # the stated bound is two standard deviations
     assert in_answer(with_friction.with_noise(Noise(force=0.1)), samples) >= 0.95
-    assert in_answer(with_friction, samples) < 0.9  # without the bound it is not
+    assert in_answer(with_friction, samples) < 0.95  # without the bound it is not
 
 
 def narrower(graph: ContactStateGraph, clearance: float) -> ContactStateGraph:
@@ -73,8 +74,9 @@ def test_against_nearest_neighbours_on_another_clearance(graph: ContactStateGrap
     inside = float(np.mean([some.state in answer.states for answer, some in zip(answers, asked, strict=True)]))
     guessed = [max(answer.margins, key=lambda name: answer.margins[name]) for answer in answers]
     best = float(np.mean([guess == some.state for guess, some in zip(guessed, asked, strict=True)]))
-    print(f"kNN right {right:.3f}; answers hold the state {inside:.3f}, {np.mean([len(a.states) for a in answers]):.2f} "
-          f"states; single {len(single)} of {len(asked)}, right {sum(a == b for a, b in single)}; best margin {best:.3f}")  # fmt: skip
+    size = np.mean([len(answer.states) for answer in answers])
+    print(f"kNN right {right:.3f}; answers hold the state {inside:.3f}, size {size:.2f}; best margin right {best:.3f}")
+    print(f"single {len(single)} of {len(asked)}, right {sum(name == true for name, true in single)}")
     assert inside >= 0.95
     assert right < inside
     assert all(name == true for name, true in single)
