@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 
 import numpy as np
 
@@ -101,8 +100,8 @@ def _about(classifier: Classifier) -> str:
     )
 
 
-def _numbers(values: Iterable[float]) -> str:
-    return ", ".join(repr(value) for value in np.asarray(values).tolist()) or "0"
+def _numbers(values: np.ndarray) -> str:
+    return ", ".join(repr(value) for value in values.tolist()) or "0"
 
 
 def _quoted(text: str) -> str:

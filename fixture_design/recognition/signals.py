@@ -96,12 +96,12 @@ class Signals:
                 blocks.append(_unit(self._checked(twist, "twist") * self.twist_scale))
         return blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
 
-    def force_rows(self, rows: Rows) -> Rows:
+    def force_rows(self, rows: Rows) -> np.ndarray:
         """Contact wrenches, shape (k, d), in the coordinates of the force block."""
         scaled = rows * self.wrench_scale
         return np.column_stack([scaled, np.zeros(len(scaled))]) if self.weight else scaled
 
-    def weight_row(self, wrench: Vector) -> Vector:
+    def weight_row(self, wrench: Vector) -> np.ndarray:
         """[-w; W] of the weight's wrench w."""
         return np.append(-wrench * self.wrench_scale, self.weight)
 

@@ -26,18 +26,19 @@ def forces(graph: ContactStateGraph, classifier: Classifier, state: str, count: 
 
 def test_only_successors_are_asked(graph: ContactStateGraph, four: Classifier) -> None:
     free, on_top, edge, two = ids(four)
-    assert set(four.state(free).successors) == {free, on_top, edge}
+    assert set(four.state(free).successors) == {free, on_top, edge, two}
+    assert set(four.state(on_top).successors) == {free, on_top}
+    assert set(four.recognize([1, 0, 0], previous=on_top).margins) >= {free, on_top}
     for wrench in forces(graph, four, edge):
         answer = four.recognize(wrench, previous=free)
         assert edge in answer.states
-        assert two not in answer.margins
         assert set(answer.margins) == set(four.state(free).successors)
         assert answer.expected
         assert (answer.margins[edge] >= 0) == (edge in answer.states)
 
 
 def test_a_state_that_no_transition_leads_to(graph: ContactStateGraph, four: Classifier) -> None:
-    free, on_top, edge, two = ids(four)
+    _, on_top, _, two = ids(four)
     (wrench,) = [w for w in forces(graph, four, two) if four.recognize(w).states == (two,)][:1]
     answer = four.recognize(wrench, previous=on_top)
     assert answer.states == (two,)
@@ -117,7 +118,8 @@ def test_in_the_part_s_axes(graph: ContactStateGraph) -> None:
             missed += name not in four.recognize(wrench).states
             asked += 1
     assert asked > 30
-    assert missed <= 0.02 * asked
+    # of four states alone few samples are at their ends: those are in states with more contacts
+    assert missed <= 0.05 * asked
 
 
 def test_jointly(graph: ContactStateGraph, four_jointly: Classifier) -> None:
@@ -137,7 +139,7 @@ def test_jointly(graph: ContactStateGraph, four_jointly: Classifier) -> None:
 
 def test_displacements_alone(graph: ContactStateGraph) -> None:
     four = build_classifier(subgraph(graph, FOUR), measure="displacement", discriminants=False)
-    free, on_top, edge, two = ids(four)
+    free, on_top, _, _ = ids(four)
     down = np.array([0.0, -1.0, 0.0])
     assert free in four.recognize(None, down).states
     assert on_top not in four.recognize(None, down).states  # into facet 5
