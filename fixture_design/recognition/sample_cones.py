@@ -40,7 +40,8 @@ class SampleCones:
 
     Attributes:
         q: shape (n, c).
-        forces: of each the unit span vectors of F, in the coordinates of the force block; lines as two of them.
+        forces: of each the unit span vectors of F, shape (k, d), or (k, d + 1) with a weight, in the coordinates of the
+            force block; lines as two of them.
         vectors: of each the contacts' unit normals with their moments, and the weight's wrench where one is known,
             scaled as forces are, shape (n, m, d): what `chart` calls near.
         displacements: of each the alternatives A_1, A_2, ... of A by their unit face vectors, in the coordinates of the
@@ -48,7 +49,7 @@ class SampleCones:
     """
 
     q: np.ndarray
-    forces: tuple[Rows, ...]
+    forces: tuple[np.ndarray, ...]
     vectors: Float[np.ndarray, "n m d"]
     displacements: tuple[tuple[Rows, ...], ...]
 

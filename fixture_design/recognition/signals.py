@@ -77,7 +77,7 @@ class Signals:
         """Factors that make [dx; dtheta] the displacement block."""
         return self._with_length(self.length)
 
-    def signal(self, wrench: ArrayLike | None, twist: ArrayLike | None, floor: float = 0.0) -> Vector:
+    def signal(self, wrench: ArrayLike | None, twist: ArrayLike | None, floor: float = 0.0) -> np.ndarray:
         """The signal of a measurement. A block that was not measured, or is zero, is zero: every cone holds that.
 
         Args:
@@ -105,7 +105,7 @@ class Signals:
         """[-w; W] of the weight's wrench w."""
         return np.append(-wrench * self.wrench_scale, self.weight)
 
-    def _force(self, wrench: Vector, floor: float) -> Vector:
+    def _force(self, wrench: Vector, floor: float) -> np.ndarray:
         scaled = wrench * self.wrench_scale
         return _unit(np.append(scaled, self.weight)) if self.weight else _unit(scaled, floor)
 
