@@ -11,13 +11,11 @@ import typer
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.numbers import numbers
 from fixture_design.errors import InputError
-from fixture_design.io import dumps, read_classifier, read_log
+from fixture_design.io import dumps
 from fixture_design.layout import Pose
 
 if TYPE_CHECKING:
-    from fixture_design.recognition import Classifier, Recognition
-    from fixture_design.recognition.log import Log
-    from fixture_design.recognition.sensor import Sensor
+    from fixture_design.recognition import Classifier, Log, Recognition, Sensor
 
 
 def recognize(
@@ -44,10 +42,11 @@ def recognize(
 
     Exit code: 0, 3 some rows fit no state, 2 bad input.
     """
+    from fixture_design.io import read_classifier, read_log  # noqa: PLC0415 - a tenth of any start
+    from fixture_design.recognition import recognize_log  # noqa: PLC0415 - as above
+
     known = read_classifier(classifier)
     rows = read_log(log, known.signals.plane)
-    from fixture_design.recognition.log import recognize_log  # noqa: PLC0415 - after the arguments are known good
-
     before = None if start is None else [name.strip() for name in start.split(",")]
     try:
         answers = recognize_log(known, rows, _sensor(known, rows, sensor, tare, tare_rows), before)
@@ -62,7 +61,7 @@ def recognize(
 
 
 def _sensor(known: Classifier, rows: Log, pose: str | None, tare: str | None, tare_rows: int) -> Sensor:
-    from fixture_design.recognition.sensor import Sensor  # noqa: PLC0415 - as above
+    from fixture_design.recognition import Sensor  # noqa: PLC0415 - as above
 
     plane = known.signals.plane
     where, zero = numbers(pose, "--sensor"), numbers(tare, "--tare")

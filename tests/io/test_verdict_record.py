@@ -172,7 +172,7 @@ def test_schema_of_nothing() -> None:
         json_schema("layuot")
     assert (
         str(caught.value)
-        == "no file kind is called 'layuot'; did you mean 'layout'? there are: assembly, graph, layout, task, verdict"
+        == "no file kind is called 'layuot'; did you mean 'layout'? there are: assembly, classifier, graph, layout, task, verdict"
     )
 
 

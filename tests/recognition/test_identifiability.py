@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -11,7 +9,7 @@ from scipy.spatial import cKDTree
 from fixture_design.assembly import ContactStateGraph, state_graph
 from fixture_design.io import assembly_from_data
 from fixture_design.recognition import Classifier, Noise, build_classifier
-from tests.recognition.synthetic import Measured, TrueSets, measured
+from tests.recognition.synthetic import Measured, TrueSets, measured, rays_at
 
 
 def in_answer(classifier: Classifier, samples: list[Measured]) -> float:
@@ -55,8 +53,8 @@ def narrower(graph: ContactStateGraph, clearance: float) -> ContactStateGraph:
 def test_against_nearest_neighbours_on_another_clearance(graph: ContactStateGraph) -> None:
     """kNN learns on one clearance and is asked on another one; the classifier knows the new part's geometry.
 
-    One force seldom tells one state, so that the classifier names one seldom; where it does it is right, and its
-    answer holds the state. kNN always names one.
+    One force seldom tells one state. kNN names one all the same, mostly a wrong one; the classifier's answer holds the
+    true one and is single only where it is sure, which without the state before is next to never.
     """
     rng = np.random.default_rng(4)
     learned = measured(graph, rng, 100, friction=0.2, noise=0.02)
@@ -78,7 +76,7 @@ def test_against_nearest_neighbours_on_another_clearance(graph: ContactStateGrap
     print(f"kNN right {right:.3f}; answers hold the state {inside:.3f}, size {size:.2f}; best margin right {best:.3f}")
     print(f"single {len(single)} of {len(asked)}, right {sum(name == true for name, true in single)}")
     assert inside >= 0.95
-    assert right < inside
+    assert right < 0.5
     assert all(name == true for name, true in single)
 
 
@@ -92,20 +90,19 @@ def most(kinds: np.ndarray) -> str:
 
 
 @pytest.mark.slow
-def test_the_whole_graph_jointly_tells_more(graph: ContactStateGraph) -> None:
-    """Force and motion together leave fewer states than force alone, and still the true one."""
+def test_force_and_motion_jointly_tell_more(apart: ContactStateGraph) -> None:
+    """A motion that keeps the loaded contacts contradicts states where another contact would be in its way."""
     rng = np.random.default_rng(6)
-    wanted = tuple(state for state in graph.states if len(state.contacts) <= 1)
-    some = replace(graph, states=wanted, transitions=())
-    jointly = build_classifier(some, measure="both", noise=Noise(0.02, 0.02), discriminants=False)
-    alone = build_classifier(some, noise=Noise(0.02), discriminants=False)
+    jointly = build_classifier(apart, measure="both", noise=Noise(0.02, 0.02), accuracy=0.01, discriminants=False)
+    alone = build_classifier(apart, noise=Noise(0.02), accuracy=0.01, discriminants=False)
     sizes, held = [], []
-    for sample in measured(some, rng, 20):
-        rows = sample.wrench / np.linalg.norm(sample.wrench)
+    for some in measured(apart, rng, 15):
+        kept = rays_at(some.q, apart.state(some.state).contacts, 0.0)
         twist = rng.normal(size=3)
-        twist -= (twist @ rows) * rows  # contact kept: d . dq = 0
-        both = jointly.recognize(sample.wrench, twist)
-        held.append(sample.state in both.states)
-        sizes.append((len(both.states), len(alone.recognize(sample.wrench).states)))
+        twist -= twist @ np.linalg.pinv(kept) @ kept  # d . dq = 0
+        both = jointly.recognize(some.wrench, twist)
+        held.append(some.state in both.states)
+        sizes.append((len(both.states), len(alone.recognize(some.wrench).states)))
+    with_motion, without = np.mean(sizes, axis=0)
     assert np.mean(held) >= 0.98
-    assert np.mean([a for a, _ in sizes]) < np.mean([b for _, b in sizes])
+    assert with_motion <= 0.95 * without
