@@ -1,0 +1,30 @@
+"""The scene: one plain description of what there is to see, for whatever draws it.
+
+`scene_of` makes it of a layout and its verdict; `viewing.meshcat_page`, `viewing.drake_meshcat` and
+`viewing.drake_picture` draw it. Nothing here imports a renderer.
+"""
+
+from fixture_design.viewing.scene.build import scene_of
+from fixture_design.viewing.scene.scene import Animation, Camera, Label, Layer, Scene, Story, Thing
+from fixture_design.viewing.scene.shapes import Arrow, Box, Cylinder, Lines, Mesh, Shape, Sphere
+from fixture_design.viewing.scene.tessellation import facet_soup, triangles_of
+
+__all__ = [
+    "Animation",
+    "Arrow",
+    "Box",
+    "Camera",
+    "Cylinder",
+    "Label",
+    "Layer",
+    "Lines",
+    "Mesh",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "Story",
+    "Thing",
+    "facet_soup",
+    "scene_of",
+    "triangles_of",
+]

@@ -1,0 +1,84 @@
+"""The scene of a layout and its verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from fixture_design.contacts import ROLES
+from fixture_design.layout import Layout, Verdict
+from fixture_design.viewing.palette import FEATURE, LOAD, PART, ROLE_COLORS
+from fixture_design.viewing.scene.acting import load_things
+from fixture_design.viewing.scene.camera import camera_of
+from fixture_design.viewing.scene.contact_marks import contact_things
+from fixture_design.viewing.scene.elements import element_things
+from fixture_design.viewing.scene.features import feature_things
+from fixture_design.viewing.scene.scene import Label, Layer, Scene, Thing
+from fixture_design.viewing.scene.solid import body_things, extent, part_things, solid_of, where
+from fixture_design.viewing.scene.stories import first_story, stories_of
+
+if TYPE_CHECKING:
+    from fixture_design.geometry import PartGeometry, Polygon
+
+
+def scene_of(layout: Layout, verdict: Verdict, geometry: PartGeometry | Polygon | None = None) -> Scene:
+    """Everything there is to see of a layout: the part, what touches it, what acts, and a story for each answer.
+
+    Args:
+        verdict: of ``layout``, as `verify` gave it; its contacts are drawn.
+        geometry: the part's, where it is loaded already.
+
+    Raises:
+        InputError: the part or a body cannot be read.
+    """
+    solid = solid_of(layout, geometry)
+    center, size = where(solid, verdict)
+    things, labels = _sorted(
+        (
+            *part_things(solid, verdict.contacts, size),
+            *body_things(layout),
+            *element_things(layout, verdict.contacts, size),
+            *contact_things(layout, verdict.contacts, size),
+            *load_things(layout, center, size),
+            *feature_things(layout, verdict, size),
+        )
+    )
+    seen = extent(tuple(thing for thing in things if not thing.path.startswith(("loads", "normals", "cones"))))
+    vertices = solid.mesh.vertices if solid is not None else seen
+    stories = stories_of(layout, verdict, vertices, center, size)
+    return Scene(
+        name=layout.name,
+        center=center,
+        size=size,
+        things=things,
+        labels=labels,
+        stories=stories,
+        layers=tuple(_layers(layout, things)),
+        camera=camera_of(layout.space, verdict.contacts, seen, center),
+        satisfied=verdict.satisfied,
+        first=first_story(stories, verdict),
+        notes=verdict.notes,
+    )
+
+
+def _sorted(found: Iterable[Thing | Label]) -> tuple[tuple[Thing, ...], tuple[Label, ...]]:
+    everything = list(found)
+    things = tuple(each for each in everything if isinstance(each, Thing))
+    return things, tuple(each for each in everything if isinstance(each, Label))
+
+
+def _layers(layout: Layout, things: tuple[Thing, ...]) -> Iterable[Layer]:
+    """The legend: only what is there."""
+    feet = {"locator": "block at the foot", "clamp": "knob", "support": "cone", "finger": "ball"}
+    known = [Layer("part", "part", PART)]
+    known += [Layer(f"elements/{role}", f"{role} ({feet[role]})", ROLE_COLORS[role]) for role in ROLES]
+    known += [
+        Layer("bodies", "fixture bodies", ROLE_COLORS[layout.bodies[0].role] if layout.bodies else PART),
+        Layer("contacts", "contact points", "#000000", "dot"),
+        Layer("normals", "pushes on the part, along the inward normals", ROLE_COLORS["locator"], "arrow"),
+        Layer("cones", "friction cones", ROLE_COLORS["locator"], "cone"),
+        Layer("loads", "loads", LOAD, "arrow"),
+        Layer("features", "key features", FEATURE, "dot"),
+    ]
+    there = {thing.path for thing in things}
+    return [layer for layer in known if any(path.startswith(layer.path + "/") for path in there)]

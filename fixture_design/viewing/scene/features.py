@@ -1,0 +1,59 @@
+"""Key features: a bar through the point along the direction that matters, and the error that is possible there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isinf
+
+import numpy as np
+
+from fixture_design.contacts import unit_normal
+from fixture_design.layout import FeatureError, Layout, LocatingErrors, Verdict
+from fixture_design.viewing.palette import BLACK, FEATURE, GREEN, VERMILLION
+from fixture_design.viewing.scene.drawn_sizes import ASIDE, THICK, THIN, TOLERANCE
+from fixture_design.viewing.scene.drawn_sizes import FEATURE as HALF
+from fixture_design.viewing.scene.scene import Label, Thing
+from fixture_design.viewing.scene.shapes import Arrow, Cylinder, Sphere
+from fixture_design.viewing.scene.space import lifted
+from fixture_design.viewing.use_words import feature_in_words
+
+#: Errors are drawn to this many tolerances; larger ones are cut off.
+_MOST = 3.0
+
+
+def feature_things(layout: Layout, verdict: Verdict, size: float) -> Iterator[Thing | Label]:
+    """Every key feature, its name with its error where that was asked for."""
+    errors = {error.feature: error for error in _errors(verdict)}
+    for number, feature in enumerate(layout.key_features):
+        point, way = lifted(feature.point), lifted(unit_normal(feature.direction))
+        half = HALF * size * way
+        path = f"features/{number}"
+        yield Thing(f"{path}/point", Sphere(point, 1.6 * THICK * size), FEATURE)
+        yield Thing(f"{path}/direction", Cylinder(point - half, point + half, 0.8 * THICK * size), FEATURE)
+        words = feature_in_words(errors[feature.name]) if feature.name in errors else feature.name
+        yield Label(path, words, point + half + ASIDE * size * way, BLACK)
+
+
+def _errors(verdict: Verdict) -> Iterator[FeatureError]:
+    for group in verdict.groups.values():
+        for finding in group.findings.values():
+            if isinstance(finding.use, LocatingErrors):
+                yield from finding.use.features
+
+
+def error_things(path: str, evidence: LocatingErrors, size: float) -> Iterator[Thing]:
+    """For each feature two arrows as long as its error, and rings where its tolerance ends: one length for all."""
+    for number, feature in enumerate(evidence.features):
+        point, way = lifted(feature.point), lifted(feature.direction)
+        used = _MOST if isinf(feature.worst) else min(feature.worst / feature.tolerance, _MOST)
+        color = GREEN if feature.worst <= feature.tolerance else VERMILLION
+        for sign in (-1.0, 1.0):
+            step = sign * TOLERANCE * size * way
+            ring = point + step
+            thin = 0.5 * THIN * size * way
+            tip = point + used * step
+            if np.any(tip != point):
+                yield Thing(f"{path}/error/{number}/{sign:+.0f}", Arrow(point, tip, THICK * size), color)
+            yield Thing(
+                f"{path}/allowed/{number}/{sign:+.0f}", Cylinder(ring - thin, ring + thin, 3 * THICK * size), BLACK
+            )

@@ -1,0 +1,88 @@
+"""Motions to see: the way as an arrow, a turn as an arc about its axis, a screw as both; and the part moving so.
+
+Evidence is a displacement to first order. It is followed as the one screw motion that begins with it, as far as can be
+seen and no further: a picture of a direction, not of how far the part really gets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fixture_design.layout import Pose
+from fixture_design.viewing.palette import LOAD, MOTION
+from fixture_design.viewing.scene.arrows import bent_arrow
+from fixture_design.viewing.scene.drawn_sizes import SHOWN, SHOWN_ANGLE, THICK, THIN, TURN, WAY
+from fixture_design.viewing.scene.scene import Animation, Thing
+from fixture_design.viewing.scene.shapes import Arrow, Cylinder, Points3, Vector3
+from fixture_design.viewing.scene.space import Twist
+
+#: Steps of an animation, and how long it takes one way [s].
+_STEPS, _SECONDS = 12, 1.4
+
+
+def screw_pose(twist: Twist, amount: float) -> Pose:
+    """The screw motion that begins with a displacement, followed for ``amount``: exp(amount [dx; dtheta]).
+
+    R by Rodrigues' formula, p = (1 - R)(w X v) / |w|^2 + w (w . v) amount / |w|^2 for w = dtheta, v = dx.
+    """
+    turn = float(np.linalg.norm(twist.about))
+    if turn == 0:
+        return Pose(np.eye(3), amount * twist.along)
+    x, y, z = twist.about / turn
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = amount * turn
+    rotation = np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
+    center = np.cross(twist.about, twist.along) / turn**2
+    advance = twist.about * float(twist.about @ twist.along) * amount / turn**2
+    return Pose(rotation, center - rotation @ center + advance)
+
+
+def shown_amount(twist: Twist, vertices: Points3, size: float) -> float:
+    """How far a displacement is followed so that it is seen: the farthest point by a part of the size, turns by little."""
+    speeds = np.linalg.norm(twist.along + np.cross(twist.about, vertices), axis=1)
+    amount = SHOWN * size / float(speeds.max())
+    turn = float(np.linalg.norm(twist.about))
+    return min(amount, SHOWN_ANGLE / turn) if turn > 0 else amount
+
+
+def motion_animation(twist: Twist, amount: float, path: str = "part", both_ways: bool = False) -> Animation:
+    """The part along the motion and back."""
+    poses = tuple(screw_pose(twist, amount * k / _STEPS) for k in range(_STEPS + 1))
+    return Animation(path, poses, _SECONDS, both_ways)
+
+
+def motion_things(path: str, twist: Twist, center: Vector3, size: float) -> Iterator[Thing]:
+    """An arrow through the part's middle, or an arc around the axis with the axis; a screw's arc climbs.
+
+    Args:
+        center, size: the part's middle and half diagonal [m].
+    """
+    if twist.is_straight(center, size):
+        way = twist.at(center)
+        way = way / np.linalg.norm(way)
+        yield Thing(f"{path}/way", Arrow(center, center + WAY * size * way, 1.4 * THICK * size), MOTION)
+        return
+    turn = float(np.linalg.norm(twist.about))
+    axis = twist.about / turn
+    velocity = twist.at(center)
+    on_axis = center + np.cross(twist.about, velocity) / turn**2
+    pitch = float(twist.about @ velocity) / turn**2
+    half = 1.3 * size * axis
+    yield Thing(f"{path}/axis", Cylinder(on_axis - half, on_axis + half, THIN * size), MOTION)
+    climb = float(np.clip(1.5 * np.pi * pitch, -size, size))
+    yield Thing(f"{path}/turn", bent_arrow(on_axis, axis, TURN * size, 1.4 * THICK * size, climb), MOTION)
+
+
+def smallest_push(path: str, twist: Twist, vertices: Points3, center: Vector3, size: float) -> Iterator[Thing]:
+    """A push along the motion where it moves the part most: nothing resists the motion, so the smallest will do."""
+    if twist.is_straight(center, size):  # every point is as fast: pushed from behind
+        velocity = twist.at(center)
+        unit = velocity / np.linalg.norm(velocity)
+        at = center + unit * float(((vertices - center) @ unit).min())
+    else:
+        at = vertices[int(np.argmax(np.linalg.norm(twist.along + np.cross(twist.about, vertices), axis=1)))]
+        velocity = twist.at(at)
+        unit = velocity / np.linalg.norm(velocity)
+    yield Thing(f"{path}/disturbance", Arrow(at - 0.4 * size * unit, at, THICK * size), LOAD)

@@ -1,0 +1,138 @@
+"""What the part and the bodies look like: meshes in W, sharp edges, and where everything is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fixture_design.contacts import Contact, tangents, unit_normal
+from fixture_design.geometry import PartGeometry, Polygon, load_geometry, load_part, sharp_edges
+from fixture_design.layout import Body, Layout, Part, Pose, Verdict
+from fixture_design.viewing.palette import EDGES, PART, ROLE_COLORS
+from fixture_design.viewing.scene.drawn_sizes import FACET, SHEET
+from fixture_design.viewing.scene.scene import Thing
+from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Points3, Segments3, Vector3
+from fixture_design.viewing.scene.space import lifted, lifted_rows
+
+#: How much of what is behind a solid shows: contacts are inside and behind.
+_PART_OPACITY, _BODY_OPACITY = 0.5, 0.35
+
+#: Parts with less than this of sharp edges a triangle are drawn with them; else they are all edges.
+_EDGES_A_TRIANGLE = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A part in W: its mesh and edges, its middle, and half its diagonal [m]."""
+
+    mesh: Mesh
+    edges: Segments3
+    center: Vector3
+    size: float
+
+    def farthest(self, direction: Vector3) -> Vector3:
+        """A vertex that is farthest along a direction."""
+        return self.mesh.vertices[int(np.argmax(self.mesh.vertices @ direction))]
+
+
+def solid_of(layout: Layout, geometry: PartGeometry | Polygon | None = None) -> Solid | None:
+    """The layout's part; None for layouts of contacts alone.
+
+    Args:
+        geometry: the part's, where it is loaded already.
+
+    Raises:
+        InputError: the part cannot be read.
+    """
+    if layout.part is None:
+        return None
+    geometry = geometry or load_geometry(layout.part)
+    if isinstance(geometry, Polygon):
+        return _sheet(layout.part.pose.points(geometry.vertices), geometry.half_diagonal)
+    return _placed(geometry, layout.part.pose)
+
+
+def _placed(geometry: PartGeometry, pose: Pose) -> Solid:
+    edges = sharp_edges(geometry)
+    if len(edges) > _EDGES_A_TRIANGLE * len(geometry.triangles):
+        edges = edges[:0]
+    mesh = Mesh(pose.points(geometry.vertices), geometry.triangles.astype(np.int64))
+    moved = pose.points(edges.reshape(-1, 3)).reshape(-1, 2, 3)
+    return Solid(mesh, moved, pose.points(geometry.box_center[None])[0], geometry.half_diagonal)
+
+
+def _sheet(corners: np.ndarray, size: float) -> Solid:
+    """A polygon as a thin plate about z = 0."""
+    import shapely  # noqa: PLC0415 - only where there are polygons
+    from shapely.geometry.polygon import orient  # noqa: PLC0415 - as above
+
+    count, half = len(corners), SHEET * size / 2
+    index = {tuple(corner): number for number, corner in enumerate(corners.tolist())}
+    pieces = shapely.constrained_delaunay_triangles(shapely.Polygon(corners)).geoms
+    flat = np.array([[index[xy] for xy in orient(piece).exterior.coords[:-1]] for piece in pieces])
+    here, there = np.arange(count), (np.arange(count) + 1) % count
+    walls = [np.column_stack([here, there, there + count]), np.column_stack([here, there + count, here + count])]
+    low, high = (np.column_stack([corners, np.full(count, z)]) for z in (-half, half))
+    mesh = Mesh(np.vstack([low, high]), np.vstack([flat[:, ::-1], flat + count, *walls]))
+    rims = [np.stack([level[here], level[there]], axis=1) for level in (low, high)]
+    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    return Solid(mesh, np.vstack([*rims, np.stack([low, high], axis=1)]), lifted(middle), size)
+
+
+def where(solid: Solid | None, verdict: Verdict) -> tuple[Vector3, float]:
+    """Middle and half diagonal of what is looked at [m]; of layouts of contacts alone, of their points."""
+    if solid is not None:
+        return solid.center, solid.size
+    points = lifted_rows(np.array([contact.point for contact in verdict.contacts]))
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    spread = float(np.linalg.norm(np.ptp(points, axis=0))) / 2
+    return middle, spread or verdict.length or 1.0
+
+
+def part_things(solid: Solid | None, contacts: Sequence[Contact], size: float) -> Iterator[Thing]:
+    """The part, translucent, and its edges; where there is none, pieces of its facets, one for each normal."""
+    if solid is None:
+        yield from _facets(contacts, size)
+        return
+    yield Thing("part/solid", solid.mesh, PART, _PART_OPACITY)
+    if len(solid.edges):
+        yield Thing("part/edges", Lines(solid.edges), EDGES)
+
+
+def _facets(contacts: Sequence[Contact], size: float) -> Iterator[Thing]:
+    """A small plate behind each contact, square to the normal."""
+    thick = 0.1 * FACET * size
+    for number, contact in enumerate(contacts):
+        for k, normal in enumerate(contact.normals):
+            unit = lifted(unit_normal(normal))
+            first, second = tangents(unit)
+            axes = np.column_stack([first, second, unit])
+            middle = lifted(contact.point) - thick / 2 * unit
+            sides = np.array([FACET * size, FACET * size, thick])
+            yield Thing(f"part/facets/{number}/{k}", Box(middle, axes, sides), PART, _PART_OPACITY)
+
+
+def body_things(layout: Layout) -> Iterator[Thing]:
+    """The fixture bodies in the colour of their role."""
+    for number, body in enumerate(layout.bodies):
+        solid = _body(body)
+        yield Thing(f"bodies/{number}/solid", solid.mesh, ROLE_COLORS[body.role], _BODY_OPACITY)
+        if len(solid.edges):
+            yield Thing(f"bodies/{number}/edges", Lines(solid.edges), ROLE_COLORS[body.role])
+
+
+def _body(body: Body) -> Solid:
+    return _placed(load_part(Part(body.name, "urdf", body.file, None, 1.0, body.pose)), body.pose)
+
+
+def extent(things: tuple[Thing, ...]) -> Points3:
+    """Points that a picture of some things must hold, shape (n, 3)."""
+    from fixture_design.viewing.scene.tessellation import triangles_of  # noqa: PLC0415 - imports this module's types
+
+    found = [
+        thing.shape.segments.reshape(-1, 3) if isinstance(thing.shape, Lines) else triangles_of(thing.shape).vertices
+        for thing in things
+    ]
+    return np.vstack(found) if found else np.zeros((0, 3))
