@@ -33,8 +33,8 @@ The folders state the theory, and each imports only from those to its right::
 * `assembly`: which contacts two parts can have and which can follow which: the contact state graph.
 * `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
-* `io`: files. `viewing`: evidence in words, the sheet to sign. `batch`: thousands of layouts in worker processes.
-  `cli`: the command line.
+* `io`: files. `viewing`: evidence in words, the sheet to sign, the scene to look at (`viewing.scene`) as a page, a
+  picture or a live session. `batch`: thousands of layouts in worker processes. `cli`: the command line.
 
 How an answer is decided
 ========================
@@ -77,6 +77,7 @@ if TYPE_CHECKING:
     )
     from fixture_design.layout import Layout, Verdict
     from fixture_design.verification import check, contacts_of, verify
+    from fixture_design.viewing import preview
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
@@ -91,6 +92,7 @@ _HOME = {
     "check": "verification",
     "contacts_of": "verification",
     "design": "design",
+    "preview": "viewing",
     "read_assembly": "io",
     "read_graph": "io",
     "read_layout": "io",
@@ -117,6 +119,7 @@ __all__ = [
     "check",
     "contacts_of",
     "design",
+    "preview",
     "read_assembly",
     "read_graph",
     "read_layout",

@@ -14,6 +14,7 @@ from fixture_design.cli.batch import batch
 from fixture_design.cli.design import design
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
+from fixture_design.cli.preview import preview
 from fixture_design.cli.schema import schema
 from fixture_design.cli.states import states
 from fixture_design.cli.verify import verify
@@ -33,6 +34,7 @@ app.command()(design)
 
 app.command()(batch)
 
+app.command()(preview)
 app.command()(states)
 app.command()(schema)
 

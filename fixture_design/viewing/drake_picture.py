@@ -12,15 +12,17 @@ import numpy as np
 from fixture_design.errors import UnsupportedError
 from fixture_design.viewing.palette import GROUND, MOTION, rgb
 from fixture_design.viewing.projection import Projection
-from fixture_design.viewing.scene import Lines, Mesh, Scene, Story, Thing, facet_soup, triangles_of
+from fixture_design.viewing.scene import Mesh, Scene, Story, Thing, facet_soup, joined, triangles_of
 
 #: What of the moved part shows at its farthest place.
-GHOST_OPACITY = 0.22
+GHOST_OPACITY = 0.13
 
 _ENGINE = "picture"
 
 
-def render(scene: Scene, things: Sequence[Thing], story: Story | None, view: Projection) -> tuple[np.ndarray, np.ndarray]:
+def render(
+    scene: Scene, things: Sequence[Thing], story: Story | None, view: Projection
+) -> tuple[np.ndarray, np.ndarray]:
     """Colours and depths of the solid things, and of a ghost of what the story moves, where it gets to.
 
     Args:
@@ -37,7 +39,7 @@ def render(scene: Scene, things: Sequence[Thing], story: Story | None, view: Pro
 
     graph: Any = SceneGraph()
     source = graph.RegisterSource("scene")
-    for number, (mesh, color, opacity) in enumerate(_solids(scene, things, story)):
+    for number, (mesh, color, opacity) in enumerate(_solids(scene, things, story, view)):
         graph.RegisterAnchoredGeometry(source, _instance(str(number), mesh, color, opacity))
     try:
         graph.AddRenderer(_ENGINE, _engine())
@@ -59,45 +61,51 @@ def _require_egl() -> None:
         raise UnsupportedError("pictures are drawn through EGL, which is not here", expected=_NEEDED) from cause
 
 
-def _solids(scene: Scene, things: Sequence[Thing], story: Story | None) -> Iterable[tuple[Mesh, str, float]]:
+def _solids(
+    scene: Scene, things: Sequence[Thing], story: Story | None, view: Projection
+) -> Iterable[tuple[Mesh, str, float]]:
     """Meshes in the coordinates of the view: opaque ones of a colour together, and the ghost."""
     opaque: dict[str, list[Mesh]] = {}
     for thing in things:
-        if isinstance(thing.shape, Lines):
+        if not thing.solid:
             continue
         mesh = _in_view(scene, thing)
         if thing.opacity == 1.0:
             opaque.setdefault(thing.color, []).append(mesh)
         else:
-            yield mesh, thing.color, thing.opacity
+            yield _towards(view, mesh), thing.color, thing.opacity
     for color, meshes in opaque.items():
         for smooth in (False, True):
             same = [mesh for mesh in meshes if mesh.smooth == smooth]
             if same:
-                yield _joined(same), color, 1.0
-    yield from _ghost(scene, things, story)
+                yield joined(same), color, 1.0
+    yield from _ghost(scene, things, story, view)
 
 
-def _ghost(scene: Scene, things: Sequence[Thing], story: Story | None) -> Iterable[tuple[Mesh, str, float]]:
+def _towards(view: Projection, mesh: Mesh) -> Mesh:
+    """Without the triangles that are seen from behind: VTK sorts four translucent layers, not more."""
+    corners = mesh.vertices[mesh.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing = np.einsum("ij,ij->i", normals, view.eye - corners[:, 0]) > 0
+    return Mesh(mesh.vertices, mesh.triangles[facing], mesh.smooth) if facing.any() else mesh
+
+
+def _ghost(
+    scene: Scene, things: Sequence[Thing], story: Story | None, view: Projection
+) -> Iterable[tuple[Mesh, str, float]]:
     if story is None or story.animation is None:
         return
     far = scene.matrix(story.animation.poses[-1])
     for thing in things:
-        if thing.path.startswith(story.animation.path + "/") and not isinstance(thing.shape, Lines):
+        if thing.path.startswith(story.animation.path + "/") and thing.solid:
             mesh = _in_view(scene, thing)
             moved = mesh.vertices @ far[:3, :3].T + far[:3, 3]
-            yield Mesh(moved, mesh.triangles, mesh.smooth), MOTION, GHOST_OPACITY
+            yield _towards(view, Mesh(moved, mesh.triangles, mesh.smooth)), MOTION, GHOST_OPACITY
 
 
 def _in_view(scene: Scene, thing: Thing) -> Mesh:
     mesh = triangles_of(thing.shape)
     return Mesh(scene.to_view(mesh.vertices), mesh.triangles, mesh.smooth)
-
-
-def _joined(meshes: Sequence[Mesh]) -> Mesh:
-    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
-    return Mesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(triangles), meshes[0].smooth)
 
 
 def _instance(name: str, mesh: Mesh, color: str, opacity: float) -> Any:
@@ -112,7 +120,8 @@ def _instance(name: str, mesh: Mesh, color: str, opacity: float) -> Any:
     from pydrake.geometry import Mesh as DrakeMesh  # noqa: PLC0415 - as above
     from pydrake.math import RigidTransform  # noqa: PLC0415 - as above
 
-    memory: Any = InMemoryMesh(mesh_file=MemoryFile(contents=_obj(mesh).encode(), extension=".obj", filename_hint=name))
+    content: Any = _obj(mesh).encode()
+    memory: Any = InMemoryMesh(mesh_file=MemoryFile(contents=content, extension=".obj", filename_hint=name))
     instance: Any = GeometryInstance(RigidTransform(), DrakeMesh(memory), name)
     properties: Any = PerceptionProperties()
     properties.AddProperty("phong", "diffuse", Rgba(*rgb(color), opacity))
@@ -124,9 +133,9 @@ def _instance(name: str, mesh: Mesh, color: str, opacity: float) -> Any:
 def _obj(mesh: Mesh) -> str:
     """As OBJ with normals, which VTK asks for."""
     vertices, normals = facet_soup(mesh)
-    lines = ["v %.7g %.7g %.7g" % row for row in map(tuple, vertices.tolist())]
-    lines += ["vn %.5g %.5g %.5g" % row for row in map(tuple, normals.tolist())]
-    lines += ["f %d//%d %d//%d %d//%d" % (k, k, k + 1, k + 1, k + 2, k + 2) for k in range(1, len(vertices), 3)]
+    lines = [f"v {x:.7g} {y:.7g} {z:.7g}" for x, y, z in vertices.tolist()]
+    lines += [f"vn {x:.5g} {y:.5g} {z:.5g}" for x, y, z in normals.tolist()]
+    lines += [f"f {k}//{k} {k + 1}//{k + 1} {k + 2}//{k + 2}" for k in range(1, len(vertices), 3)]
     return "\n".join(lines) + "\n"
 
 
@@ -135,9 +144,12 @@ def _engine() -> Any:
 
     parameters: Any = RenderEngineVtkParams()
     parameters.default_clear_color = np.array(rgb(GROUND))
-    front: Any = LightParameter(type="directional", frame="camera", intensity=0.85, direction=[0.25, 0.35, 1.0])
-    above: Any = LightParameter(type="directional", frame="camera", intensity=0.45, direction=[-0.5, 1.0, 0.5])
-    parameters.lights = [front, above]
+    # from the camera, and softly from above and below: no side of anything is black
+    lights = ((0.72, [0.0, 0.0, 1.0]), (0.3, [-0.5, 1.0, 0.6]), (0.22, [0.6, -0.9, 0.5]))
+    parameters.lights = [
+        LightParameter(type="directional", frame="camera", intensity=intensity, direction=direction)
+        for intensity, direction in lights
+    ]
     return MakeRenderEngineVtk(parameters)
 
 
@@ -155,7 +167,8 @@ def _images(graph: Any, view: Projection) -> tuple[np.ndarray, np.ndarray]:
     near, far = view.clipping
     info: Any = CameraInfo(view.width, view.height, view.fov)
     core: Any = RenderCameraCore(_ENGINE, info, ClippingRange(near, far), RigidTransform())
-    pose: Any = RigidTransform(RotationMatrix(view.axes.T), view.eye)
+    eye: Any = view.eye
+    pose: Any = RigidTransform(RotationMatrix(view.axes.T), eye)
     query: Any = graph.get_query_output_port().Eval(graph.CreateDefaultContext())
     frame = graph.world_frame_id()
     color = query.RenderColorImage(ColorRenderCamera(core, False), frame, pose).data[:, :, :3]

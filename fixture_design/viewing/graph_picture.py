@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -37,7 +38,12 @@ def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
     if path.suffix.lower() == ".svg":
         write_text(path, graph_picture(graph) + "\n")
     elif path.suffix.lower() == ".png":
-        _write_png(graph, path)
+        _require_planar(graph)
+        try:
+            with path.open("wb") as file:
+                draw_graph(graph, file)
+        except OSError as cause:
+            raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
     else:
         raise UnsupportedError("graphs are drawn as SVG or PNG", source=path, expected="a name with .svg or .png")
 
@@ -99,8 +105,12 @@ def _drawing(graph: ContactStateGraph, state: ContactState, place: tuple[float, 
     return tag("g", title, frame, inner, name)
 
 
-def _write_png(graph: ContactStateGraph, path: Path) -> None:
-    """The same drawing by matplotlib, which Drake brings along."""
+def draw_graph(graph: ContactStateGraph, file: BinaryIO) -> None:
+    """The same drawing as PNG by matplotlib, which Drake brings along.
+
+    Raises:
+        UnsupportedError: a graph in space.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - half a second of any start
     from matplotlib.figure import Figure  # noqa: PLC0415 - as above
     from matplotlib.patches import Polygon, Rectangle  # noqa: PLC0415 - as above
@@ -123,10 +133,7 @@ def _write_png(graph: ContactStateGraph, path: Path) -> None:
             axes.add_patch(shape)
             shape.set_clip_path(frame)
         axes.text(place[0] + _WIDTH / 2, place[1] + _HEIGHT + _TEXT, state.id, ha="center", fontsize=_TEXT * 0.7)
-    try:
-        FigureCanvasAgg(figure).print_png(str(path))
-    except OSError as cause:
-        raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
+    FigureCanvasAgg(figure).print_png(file)
 
 
 def _frame(state: ContactState) -> str:

@@ -51,7 +51,9 @@ def _candidates(anchor: np.ndarray, size: np.ndarray, width: float, height: floa
     ]
     for number, offset in enumerate(offsets):
         corner = anchor + offset - size / 2
-        left, top = np.clip(corner, _MARGIN, [max(width - size[0] - _MARGIN, _MARGIN), max(height - size[1] - _MARGIN, _MARGIN)])
+        left, top = np.clip(
+            corner, _MARGIN, [max(width - size[0] - _MARGIN, _MARGIN), max(height - size[1] - _MARGIN, _MARGIN)]
+        )
         found.append(Place(float(left), float(top), float(left + size[0]), float(top + size[1]), number > len(_WAYS)))
     return found
 

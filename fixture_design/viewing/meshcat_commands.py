@@ -12,6 +12,7 @@ import numpy as np
 
 from fixture_design.layout import Pose
 from fixture_design.viewing.palette import GROUND, rgb
+from fixture_design.viewing.rounds import rounds
 from fixture_design.viewing.scene import Animation, Lines, Scene, Thing, triangles_of
 
 if TYPE_CHECKING:
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
 
 #: What is there before anything is drawn, and not wanted.
 _HIDDEN = ("Grid", "Axes")
-
-#: Rest between two rounds of a motion [s].
-_REST = 0.5
 
 
 def draw(scene: Scene, visualizer: Visualizer) -> None:
@@ -46,7 +44,9 @@ def commands(scene: Scene, things: tuple[Thing, ...]) -> Iterator[Any]:
         yield SetProperty("visible", False, Path((name,)))
     for end in ("top_color", "bottom_color"):
         yield SetProperty(end, list(rgb(GROUND)), Path(("Background",)))
-    camera = PerspectiveCamera(fov=float(np.degrees(scene.camera.fov)), aspect=1.0, near=0.02, far=200.0)
+    fov: Any = float(np.degrees(scene.camera.fov))
+    near: Any = 0.02
+    camera = PerspectiveCamera(fov=fov, aspect=1, near=near, far=200)
     yield SetObject(camera, None, Path(("Cameras", "default", "rotated")))
     x, y, z = scene.to_view(scene.camera.eye[None])[0].tolist()
     # there the world is y up
@@ -61,7 +61,8 @@ def _object(scene: Scene, thing: Thing) -> Any:
     color = int(thing.color[1:], 16)
     if isinstance(thing.shape, Lines):
         points = scene.to_view(thing.shape.segments.reshape(-1, 3)).astype(np.float32)
-        return geometry.LineSegments(geometry.PointsGeometry(points.T), geometry.LineBasicMaterial(color=color))
+        thin: Any = geometry.LineBasicMaterial(color=color)
+        return geometry.LineSegments(geometry.PointsGeometry(points.T), thin)
     mesh = triangles_of(thing.shape)
     shape = geometry.TriangularMeshGeometry(scene.to_view(mesh.vertices), mesh.triangles)
     seen_through = thing.opacity < 1
@@ -94,26 +95,6 @@ def tracks(scene: Scene, animation: Animation) -> list[dict[str, object]]:
         {"name": f".{name}", "type": kind, "keys": [{"time": time, "value": placed[k]} for time, placed in found]}
         for k, (name, kind) in enumerate((("position", "vector3"), ("quaternion", "quaternion")))
     ]
-
-
-def rounds(animation: Animation) -> list[tuple[float, Pose]]:
-    """Times [s] and motions of one round: there and back, and as far the other way where that is free too.
-
-    Slow at both ends: the amount is (1 - cos(pi t / T)) / 2.
-    """
-    count = len(animation.poses) - 1
-    amounts = np.arange(count + 1) / count
-    times = animation.seconds * np.arccos(1 - 2 * amounts) / np.pi
-    ways = [animation.poses, tuple(pose.inverse() for pose in animation.poses)][: 2 if animation.both_ways else 1]
-    found: list[tuple[float, Pose]] = []
-    start = 0.0
-    for poses in ways:
-        found += [(start + float(time), pose) for time, pose in zip(times, poses, strict=True)]
-        back = start + 2 * animation.seconds
-        found += [(back - float(time), pose) for time, pose in zip(times[-2::-1], poses[-2::-1], strict=True)]
-        start = back + _REST
-        found.append((start, poses[0]))
-    return list({round(time, 6): (time, pose) for time, pose in found}.values())
 
 
 def _placed(scene: Scene, pose: Pose) -> tuple[list[float], list[float]]:

@@ -15,6 +15,7 @@ from fixture_design.viewing.summary import SUMMARY
 _ROOM, _TITLE, _TEXT, _SMALL, _LINE = 16, 20, 14, 12, 5
 _INK, _DIM, _BACK, _RULE = "#1c1f23", "#5b626b", "#f6f7f8", "#d5d8dc"
 
+
 @cache
 def font(size: int, bold: bool = False) -> Any:
     """DejaVu Sans, which matplotlib brings along: pictures look alike everywhere."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.viewing.scene import Scene
+from fixture_design.viewing.scene import Camera, Scene
 from fixture_design.viewing.scene.shapes import Points3, Vector3
 
 #: Width for height that the scene's camera has everything in view for; narrower pictures are taken from further off.
@@ -29,9 +29,8 @@ class Projection:
     height: int
 
     @classmethod
-    def of(cls, scene: Scene, width: int, height: int) -> Projection:
-        """The scene's camera for a picture of this size."""
-        camera = scene.camera
+    def of(cls, scene: Scene, camera: Camera, width: int, height: int) -> Projection:
+        """A camera of the scene for a picture of this size."""
         eye, target = scene.to_view(np.array([camera.eye, camera.target]))
         eye = target + (eye - target) * max(1.0, _ASPECT * height / width)
         forward = (target - eye) / np.linalg.norm(target - eye)

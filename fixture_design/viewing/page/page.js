@@ -4,7 +4,7 @@ const scene = JSON.parse(document.getElementById("scene").textContent);
 const byId = (id) => document.getElementById(id);
 const LOOP = 2201, FOR_EVER = 1e9, MARGIN = 3, STEPS = 7;
 const WAYS = [[1, 0], [-1, 0], [0, -1], [0, 1], [1, -1], [-1, -1], [1, 1], [-1, 1]];
-let viewer = null, told = null, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, lastSeen = "";
+let viewer = null, told = null, turned = false, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, lastSeen = "";
 
 function bytesOf(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -24,19 +24,23 @@ function start() {
   }
   window.viewer = viewer;
   for (const command of scene.commands) viewer.handle_command_bytearray(bytesOf(command));
-  look();
   tell(scene.first);
-  addEventListener("resize", () => { lastSeen = ""; });
+  viewer.controls.addEventListener("start", () => { turned = true; });
+  addEventListener("resize", () => {
+    if (!turned) look();
+    lastSeen = "";
+  });
   requestAnimationFrame(frame);
 }
 
 function look() {
-  const { eye, target, aspect } = scene.camera, pane = byId("view");
-  const away = Math.max(1, aspect * pane.clientHeight / pane.clientWidth);
+  const { eye, target } = told === null ? scene.camera : scene.stories[told].camera, pane = byId("view");
+  const away = Math.max(1, scene.aspect * pane.clientHeight / pane.clientWidth);
   const at = eye.map((value, k) => target[k] + away * (value - target[k]));
   viewer.camera.position.copy(inWorld(at));
   viewer.controls.target.copy(inWorld(target));
   viewer.controls.update();
+  turned = false;
   viewer.set_dirty();
 }
 
@@ -72,6 +76,7 @@ function tell(number) {
     button.setAttribute("aria-pressed", String(button.dataset.story === String(number)));
   });
   byId("overview").setAttribute("aria-pressed", String(number === null));
+  if (!turned) look();
   refresh();
   const moving = told === null ? null : scene.stories[told].animation;
   byId("motion").disabled = moving === null;

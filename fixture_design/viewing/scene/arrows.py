@@ -14,6 +14,8 @@ from fixture_design.viewing.scene.space import Twist
 
 #: Corners of a bent arrow's section, pieces of its length, and how far it goes round [rad].
 _AROUND, _PIECES, _SWEEP = 10, 40, 1.5 * np.pi
+#: Curves whose ends differ by less are straight [rad].
+_STRAIGHT = 1e-6
 #: Length and radius of its head, in radii of its shaft.
 _HEAD, _HEAD_RADIUS = 7.0, 2.8
 
@@ -47,11 +49,11 @@ def bent_arrow(center: Vector3, axis: Vector3, radius: float, thick: float, adva
     angles = np.linspace(0.0, _SWEEP, _PIECES)
     line = center + radius * (np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second))
     line = line + np.outer(angles / _SWEEP - 0.5, advance * axis)
-    return _tube(line, thick)
+    return bent_along(line, thick)
 
 
-def _tube(line: Points3, thick: float) -> Mesh:
-    """A tube along a line with a cone at its end, as one smooth mesh."""
+def bent_along(line: Points3, thick: float) -> Mesh:
+    """An arrow along a curved line, shape (n, 3): a tube with a cone at its end, as one smooth mesh."""
     steps = np.gradient(line, axis=0)
     steps /= np.linalg.norm(steps, axis=1, keepdims=True)
     lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
@@ -60,7 +62,8 @@ def _tube(line: Points3, thick: float) -> Mesh:
     radii = np.where(in_head, _HEAD_RADIUS * thick * left / (_HEAD * thick), thick)
     angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
     bend = np.cross(steps[0], steps[-1])
-    up = bend / np.linalg.norm(bend) if np.linalg.norm(bend) > 0 else tangents(steps[0])[0]
+    length = float(np.linalg.norm(bend))
+    up = bend / length if length > _STRAIGHT else tangents(steps[0])[0]
     rings = []
     for point, step, radius in zip(line, steps, radii, strict=True):
         side = np.cross(up, step)

@@ -42,7 +42,8 @@ def told_balance(stage: Stage, balance: Balance, load: LoadVerdict | None, weigh
         things += drawn
         if drawn:
             labels.append(Label(stage.path, name, tail(wrench, at, scale, stage.size), LOAD))
-    caption = f"Blue arrows: forces of the contacts on the part, the longest {longest_of(pushes):.3g} N; black: what they carry."
+    longest = f"{longest_of(pushes):.3g} N"
+    caption = f"Blue arrows: forces of the contacts on the part, the longest {longest}; black: what they carry."
     return Told(caption, tuple(things), tuple(labels), without=(*PLAIN, "normals"))
 
 

@@ -3,49 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from dataclasses import replace
+
+import numpy as np
 
 from fixture_design.contacts import ROLES
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.palette import FEATURE, LOAD, PART, ROLE_COLORS
 from fixture_design.viewing.scene.acting import load_things
-from fixture_design.viewing.scene.camera import camera_of
+from fixture_design.viewing.scene.camera import aimed, camera_of
 from fixture_design.viewing.scene.contact_marks import contact_things
 from fixture_design.viewing.scene.elements import element_things
 from fixture_design.viewing.scene.features import feature_things
-from fixture_design.viewing.scene.scene import Label, Layer, Scene, Thing
-from fixture_design.viewing.scene.solid import body_things, extent, part_things, solid_of, where
+from fixture_design.viewing.scene.scene import Camera, Label, Layer, Scene, Story, Thing
+from fixture_design.viewing.scene.shapes import Mesh, Points3
+from fixture_design.viewing.scene.solid import Solid, body_things, part_things, solid_of, where
 from fixture_design.viewing.scene.stories import first_story, stories_of
-
-if TYPE_CHECKING:
-    from fixture_design.geometry import PartGeometry, Polygon
+from fixture_design.viewing.scene.tessellation import extent, joined, triangles_of
 
 
-def scene_of(layout: Layout, verdict: Verdict, geometry: PartGeometry | Polygon | None = None) -> Scene:
+def scene_of(layout: Layout, verdict: Verdict, solid: Solid | None = None) -> Scene:
     """Everything there is to see of a layout: the part, what touches it, what acts, and a story for each answer.
 
     Args:
         verdict: of ``layout``, as `verify` gave it; its contacts are drawn.
-        geometry: the part's, where it is loaded already.
+        solid: the part's, where it is made already (`solid_of`): that of the layout's part where it stands.
 
     Raises:
         InputError: the part or a body cannot be read.
     """
-    solid = solid_of(layout, geometry)
+    solid = solid or solid_of(layout)
     center, size = where(solid, verdict)
     things, labels = _sorted(
         (
             *part_things(solid, verdict.contacts, size),
-            *body_things(layout),
+            *body_things(layout, size),
             *element_things(layout, verdict.contacts, size),
             *contact_things(layout, verdict.contacts, size),
             *load_things(layout, center, size),
             *feature_things(layout, verdict, size),
         )
     )
-    seen = extent(tuple(thing for thing in things if not thing.path.startswith(("loads", "normals", "cones"))))
-    vertices = solid.mesh.vertices if solid is not None else seen
-    stories = stories_of(layout, verdict, vertices, center, size)
+    seen = extent([thing.shape for thing in things if not thing.path.startswith(("loads", "normals", "cones"))])
+    surface = joined([triangles_of(thing.shape) for thing in things if thing.path.startswith("part/") and thing.solid])
+    camera = camera_of(layout.space, verdict.contacts, seen, center)
+    stories = tuple(
+        replace(story, camera=_camera(camera, story, seen, surface))
+        for story in stories_of(layout, verdict, surface, center, size)
+    )
     return Scene(
         name=layout.name,
         center=center,
@@ -54,11 +59,21 @@ def scene_of(layout: Layout, verdict: Verdict, geometry: PartGeometry | Polygon 
         labels=labels,
         stories=stories,
         layers=tuple(_layers(layout, things)),
-        camera=camera_of(layout.space, verdict.contacts, seen, center),
+        camera=camera,
         satisfied=verdict.satisfied,
         first=first_story(stories, verdict),
         notes=verdict.notes,
     )
+
+
+def _camera(camera: Camera, story: Story, seen: Points3, surface: Mesh) -> Camera:
+    """Has what the story shows in view too, and the part where it moves to unless that is far."""
+    shown = [seen]
+    if story.things:
+        shown.append(extent([thing.shape for thing in story.things]))
+    if story.animation is not None and not story.animation.far:
+        shown.append(story.animation.poses[-1].points(surface.vertices))
+    return aimed(camera, np.vstack(shown))
 
 
 def _sorted(found: Iterable[Thing | Label]) -> tuple[tuple[Thing, ...], tuple[Label, ...]]:

@@ -35,18 +35,23 @@ def camera_of(space: Space, contacts: Sequence[Contact], seen: Points3, center: 
         directions = [_direction(azimuth) for azimuth in _AZIMUTHS]
         fronts = [float(np.maximum(normals @ way, 0.0).sum()) for way in directions]
         away, up = directions[int(np.argmax(np.round(fronts, 6)))], np.array([0.0, 0.0, 1.0])
-    right = np.cross(up, away)
+    return aimed(Camera(center + away, center, up, _FOV), seen)
+
+
+def aimed(camera: Camera, seen: Points3) -> Camera:
+    """A camera that looks the same way and has other points in view, in its middle and as near as they fit."""
+    away = (camera.eye - camera.target) / np.linalg.norm(camera.eye - camera.target)
+    right = np.cross(camera.up, away)
     right /= np.linalg.norm(right)
     axes = np.array([right, np.cross(away, right), away])
-    points = (seen - center) @ axes.T
+    points = (seen - camera.target) @ axes.T
     middle, distance = np.zeros(3), _distance(points)
-    for _ in range(_ROUNDS):  # to the middle of what is seen, where it is seen from nearer
-        focal = distance - points[:, 2]
-        image = points[:, :2] / focal[:, None]
+    for _ in range(_ROUNDS):  # to the middle of what is seen, which is then seen from nearer
+        image = points[:, :2] / (distance - points[:, 2])[:, None]
         middle[:2] = (image.max(axis=0) + image.min(axis=0)) / 2 * distance
         distance = _distance(points - middle)
-    target = center + middle @ axes
-    return Camera(target + distance * away, target, up, _FOV)
+    target = camera.target + middle @ axes
+    return Camera(target + distance * away, target, camera.up, camera.fov)
 
 
 def _direction(azimuth: float) -> Vector3:
@@ -54,6 +59,6 @@ def _direction(azimuth: float) -> Vector3:
 
 
 def _distance(points: Points3) -> float:
-    """The least distance d from which points (x right, y up, z near) are in view: |x| <= tan(fov / 2) aspect (d - z)."""
+    """The least d from which points (x right, y up, z near) are in view: |x| <= tan(fov / 2) aspect (d - z)."""
     half = np.tan(_FOV / 2) * (1 - _FREE)
     return float((np.abs(points[:, :2]) / half / [_ASPECT, 1.0] + points[:, 2:]).max())

@@ -8,8 +8,8 @@ DOT, NORMAL, CONE = 0.016, 0.14, 0.15
 THIN, THICK = 0.008, 0.018
 #: Length of the longest force or weight in a story; of the longest load.
 LONGEST, LONGEST_LOAD = 0.85, 0.6
-#: Length of a straight motion's arrow; radius of a turn's.
-WAY, TURN = 1.45, 0.75
+#: Length of a motion's arrow; radius of a turn's; from how far off an axis is not drawn, but the way of the middle.
+WAY, TURN, NEAR_AXIS = 1.45, 0.75, 0.8
 #: How far the part's farthest point is moved to show a motion; largest angle [rad].
 SHOWN, SHOWN_ANGLE = 0.3, 0.35
 #: How far the part is followed along a way out.

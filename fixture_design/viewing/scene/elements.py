@@ -1,4 +1,4 @@
-"""Elements by role and tip: the tip where it touches, a stem that comes out of the surface, a foot that tells the role."""
+"""Elements by role and tip: the tip where it touches, a stem out of the surface, a foot that tells the role."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from math import isinf
 import numpy as np
 
 from fixture_design.contacts import unit_normal
+from fixture_design.errors import format_length
 from fixture_design.layout import FeatureError, Layout, LocatingErrors, Verdict
 from fixture_design.viewing.palette import BLACK, FEATURE, GREEN, VERMILLION
 from fixture_design.viewing.scene.drawn_sizes import ASIDE, THICK, THIN, TOLERANCE
@@ -15,7 +16,6 @@ from fixture_design.viewing.scene.drawn_sizes import FEATURE as HALF
 from fixture_design.viewing.scene.scene import Label, Thing
 from fixture_design.viewing.scene.shapes import Arrow, Cylinder, Sphere
 from fixture_design.viewing.scene.space import lifted
-from fixture_design.viewing.use_words import feature_in_words
 
 #: Errors are drawn to this many tolerances; larger ones are cut off.
 _MOST = 3.0
@@ -28,10 +28,17 @@ def feature_things(layout: Layout, verdict: Verdict, size: float) -> Iterator[Th
         point, way = lifted(feature.point), lifted(unit_normal(feature.direction))
         half = HALF * size * way
         path = f"features/{number}"
-        yield Thing(f"{path}/point", Sphere(point, 1.6 * THICK * size), FEATURE)
-        yield Thing(f"{path}/direction", Cylinder(point - half, point + half, 0.8 * THICK * size), FEATURE)
-        words = feature_in_words(errors[feature.name]) if feature.name in errors else feature.name
+        yield Thing(f"{path}/point", Sphere(point, 1.3 * THICK * size), FEATURE)
+        yield Thing(f"{path}/direction", Cylinder(point - half, point + half, 0.5 * THICK * size), FEATURE)
+        words = _words(errors[feature.name]) if feature.name in errors else feature.name
         yield Label(path, words, point + half + ASIDE * size * way, BLACK)
+
+
+def _words(error: FeatureError) -> str:
+    """ "bore: 34 um of 50 um"; the rest stands beside the answer."""
+    if isinf(error.worst):
+        return f"{error.feature}: not located"
+    return f"{error.feature}: {format_length(error.worst)} of {format_length(error.tolerance)}"
 
 
 def _errors(verdict: Verdict) -> Iterator[FeatureError]:
@@ -42,7 +49,7 @@ def _errors(verdict: Verdict) -> Iterator[FeatureError]:
 
 
 def error_things(path: str, evidence: LocatingErrors, size: float) -> Iterator[Thing]:
-    """For each feature two arrows as long as its error, and rings where its tolerance ends: one length for all."""
+    """For each feature two arrows as long as its error, and discs where its tolerance ends: one length for all."""
     for number, feature in enumerate(evidence.features):
         point, way = lifted(feature.point), lifted(feature.direction)
         used = _MOST if isinf(feature.worst) else min(feature.worst / feature.tolerance, _MOST)
@@ -53,7 +60,7 @@ def error_things(path: str, evidence: LocatingErrors, size: float) -> Iterator[T
             thin = 0.5 * THIN * size * way
             tip = point + used * step
             if np.any(tip != point):
-                yield Thing(f"{path}/error/{number}/{sign:+.0f}", Arrow(point, tip, THICK * size), color)
+                yield Thing(f"{path}/error/{number}/{sign:+.0f}", Arrow(point, tip, 0.9 * THICK * size), color)
             yield Thing(
-                f"{path}/allowed/{number}/{sign:+.0f}", Cylinder(ring - thin, ring + thin, 3 * THICK * size), BLACK
+                f"{path}/allowed/{number}/{sign:+.0f}", Cylinder(ring - thin, ring + thin, 1.7 * THICK * size), BLACK
             )

@@ -33,17 +33,14 @@ def told_motion(stage: Stage, motion: Vector, *, breaks: bool, both_ways: bool =
         both_ways: nothing notices its opposite either.
     """
     twist = Twist.of_motion(motion)
-    amount = shown_amount(twist, stage.vertices, stage.size)
+    amount = shown_amount(twist, stage.surface.vertices, stage.size)
     things = list(motion_things(stage.path, twist, stage.center, stage.size))
-    caption = f"Orange: how the part moves, drawn {_exaggerated(stage)}."
+    moved = amount * float(np.linalg.norm(twist.along + np.cross(twist.about, stage.surface.vertices), axis=1).max())
+    caption = f"Orange: how the part moves, drawn so large ({format_length(moved)}) that it is seen."
     if breaks:
-        things += smallest_push(stage.path, twist, stage.vertices, stage.center, stage.size)
+        things += smallest_push(stage.path, twist, stage.surface, stage.size)
         caption += " Black: the smallest push there is enough, nothing resists it."
     return Told(caption, tuple(things), (), motion_animation(twist, amount, both_ways=both_ways), PLAIN)
-
-
-def _exaggerated(stage: Stage) -> str:
-    return f"so large ({format_length(0.3 * stage.size)}) that it is seen"
 
 
 def told_unbalanced(stage: Stage, proof: Unbalanced, load: LoadVerdict | None) -> Told:
@@ -95,7 +92,7 @@ def told_way(stage: Stage, ways: StraightWays) -> Told:
 
 def _straight(way: np.ndarray) -> Animation:
     still = np.eye(3)
-    return Animation("part", tuple(Pose(still, way * k / _STEPS) for k in range(_STEPS + 1)), _SECONDS)
+    return Animation("part", tuple(Pose(still, way * k / _STEPS) for k in range(_STEPS + 1)), _SECONDS, far=True)
 
 
 def open_path(layout: Layout, name: str) -> str | None:
@@ -120,11 +117,11 @@ def told_errors(stage: Stage, evidence: LocatingErrors, answer: Answer | None) -
     if evidence.motion is not None:
         return told_motion(stage, evidence.motion, breaks=False, both_ways=True)
     things = tuple(error_things(stage.path, evidence, stage.size))
-    caption = "Arrows: the largest error of each feature; black rings: its tolerance, drawn alike for all."
+    caption = "Arrows: the largest error of each feature; black discs: its tolerance, drawn alike for all."
     worst = [feature.displacement for feature in evidence.features if feature.displacement is not None]
     if answer is Answer.NO and worst and np.any(worst[0]):
         twist = Twist.of_motion(worst[0])
-        amount = shown_amount(twist, stage.vertices, stage.size)
+        amount = shown_amount(twist, stage.surface.vertices, stage.size)
         caption += f" The part moves as it may be off, {amount:.3g} times enlarged."
         return Told(caption, things, (), motion_animation(twist, amount), ("loads", "normals", "cones"))
     return Told(caption, things, without=("loads", "normals", "cones"))

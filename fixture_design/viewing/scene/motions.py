@@ -12,14 +12,17 @@ import numpy as np
 
 from fixture_design.layout import Pose
 from fixture_design.viewing.palette import LOAD, MOTION
-from fixture_design.viewing.scene.arrows import bent_arrow
-from fixture_design.viewing.scene.drawn_sizes import SHOWN, SHOWN_ANGLE, THICK, THIN, TURN, WAY
+from fixture_design.viewing.scene.arrows import bent_along, bent_arrow
+from fixture_design.viewing.scene.drawn_sizes import NEAR_AXIS, SHOWN, SHOWN_ANGLE, THICK, THIN, TURN, WAY
 from fixture_design.viewing.scene.scene import Animation, Thing
-from fixture_design.viewing.scene.shapes import Arrow, Cylinder, Points3, Vector3
+from fixture_design.viewing.scene.shapes import Arrow, Cylinder, Mesh, Points3, Vector3
 from fixture_design.viewing.scene.space import Twist
 
 #: Steps of an animation, and how long it takes one way [s].
 _STEPS, _SECONDS = 12, 1.4
+
+#: Points of a curved way; how much slower or less square to a motion a surface may be and still be pushed at [-].
+_PATH, _ALIKE = 40, 0.05
 
 
 def screw_pose(twist: Twist, amount: float) -> Pose:
@@ -40,7 +43,7 @@ def screw_pose(twist: Twist, amount: float) -> Pose:
 
 
 def shown_amount(twist: Twist, vertices: Points3, size: float) -> float:
-    """How far a displacement is followed so that it is seen: the farthest point by a part of the size, turns by little."""
+    """How far a displacement is followed to be seen: the farthest point by a part of the size, turns by little."""
     speeds = np.linalg.norm(twist.along + np.cross(twist.about, vertices), axis=1)
     amount = SHOWN * size / float(speeds.max())
     turn = float(np.linalg.norm(twist.about))
@@ -68,6 +71,9 @@ def motion_things(path: str, twist: Twist, center: Vector3, size: float) -> Iter
     axis = twist.about / turn
     velocity = twist.at(center)
     on_axis = center + np.cross(twist.about, velocity) / turn**2
+    if np.linalg.norm(on_axis - center) > NEAR_AXIS * size:
+        yield Thing(f"{path}/way", bent_along(_path_of(twist, center, size), 1.4 * THICK * size), MOTION)
+        return
     pitch = float(twist.about @ velocity) / turn**2
     half = 1.3 * size * axis
     yield Thing(f"{path}/axis", Cylinder(on_axis - half, on_axis + half, THIN * size), MOTION)
@@ -75,14 +81,21 @@ def motion_things(path: str, twist: Twist, center: Vector3, size: float) -> Iter
     yield Thing(f"{path}/turn", bent_arrow(on_axis, axis, TURN * size, 1.4 * THICK * size, climb), MOTION)
 
 
-def smallest_push(path: str, twist: Twist, vertices: Points3, center: Vector3, size: float) -> Iterator[Thing]:
-    """A push along the motion where it moves the part most: nothing resists the motion, so the smallest will do."""
-    if twist.is_straight(center, size):  # every point is as fast: pushed from behind
-        velocity = twist.at(center)
-        unit = velocity / np.linalg.norm(velocity)
-        at = center + unit * float(((vertices - center) @ unit).min())
-    else:
-        at = vertices[int(np.argmax(np.linalg.norm(twist.along + np.cross(twist.about, vertices), axis=1)))]
-        velocity = twist.at(at)
-        unit = velocity / np.linalg.norm(velocity)
-    yield Thing(f"{path}/disturbance", Arrow(at - 0.4 * size * unit, at, THICK * size), LOAD)
+def _path_of(twist: Twist, point: Vector3, size: float) -> Points3:
+    """Where the screw motion takes a point, along an arc as long as a straight motion's arrow."""
+    amounts = np.linspace(0.0, WAY * size / float(np.linalg.norm(twist.at(point))), _PATH)
+    return np.vstack([screw_pose(twist, amount).points(point[None]) for amount in amounts])
+
+
+def smallest_push(path: str, twist: Twist, surface: Mesh, size: float) -> Iterator[Thing]:
+    """A push along the motion from outside, where the surface faces it most and is fastest: the smallest will do."""
+    corners = surface.vertices[surface.triangles]
+    middles = corners.mean(axis=1)
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(areas, axis=1)
+    velocities = twist.along + np.cross(twist.about, middles)
+    facing = -np.einsum("ij,ij->i", areas, velocities) / np.where(sizes > 0, sizes, 1.0)
+    # of triangles that are as good the largest, whose middle is furthest from edges
+    best = int(np.argmax(np.where(facing > (1 - _ALIKE) * facing.max(), sizes, -1.0)))
+    unit = velocities[best] / np.linalg.norm(velocities[best])
+    yield Thing(f"{path}/disturbance", Arrow(middles[best] - 0.4 * size * unit, middles[best], THICK * size), LOAD)

@@ -1,4 +1,4 @@
-"""One description of a picture, whatever draws it: things in W with colours and paths, labels, what moves, what is said.
+"""One description of a picture, whatever draws it: things in W with colours and paths, labels, motions, words.
 
 A scene has *layers*, always there (the part, elements by role, contacts, loads), which a viewer may switch off; and
 *stories*, of which one at a time is told: for each answer of the verdict what shows it. A path names a thing or a group
@@ -7,13 +7,13 @@ of things, as folders do: the path of a layer is the beginning of the paths of i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from jaxtyping import Float
 
 from fixture_design.layout import Answer, Pose
-from fixture_design.viewing.scene.shapes import Points3, Shape, Vector3
+from fixture_design.viewing.scene.shapes import Lines, Points3, Shape, Vector3
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +29,11 @@ class Thing:
     shape: Shape
     color: str
     opacity: float = 1.0
+
+    @property
+    def solid(self) -> bool:
+        """Whether it has a surface, as all but lines do."""
+        return not isinstance(self.shape, Lines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +55,14 @@ class Animation:
         poses: motions in W from where it stands, the identity first, to its farthest point; evenly in time.
         seconds: from the first to the last.
         both_ways: it goes as far the other way, with the inverse motions.
+        far: it leaves the picture, which is not made to hold it.
     """
 
     path: str
     poses: tuple[Pose, ...]
     seconds: float
     both_ways: bool = False
+    far: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +74,7 @@ class Story:
         words: the evidence in words.  caption: what is drawn, and how much it is exaggerated.
         things: drawn while it is told.  animation: played meanwhile.
         without: layers that step aside meanwhile.
+        camera: that has all of it in view.
     """
 
     path: str
@@ -80,6 +88,7 @@ class Story:
     labels: tuple[Label, ...] = ()
     animation: Animation | None = None
     without: tuple[str, ...] = ()
+    camera: Camera | None = None
 
     @property
     def shown(self) -> bool:
@@ -119,6 +128,7 @@ class Scene:
         center, size: where the part is, in W, and half its diagonal [m]; adapters draw (p - center) / size, so that
             parts of a millimetre and far from the origin are drawn as exactly as any.
         first: index into ``stories`` of the one to begin with; None without.
+        camera: that has everything in view but what stories add.
         satisfied: as of the verdict.
     """
 
@@ -135,7 +145,7 @@ class Scene:
     notes: tuple[str, ...] = ()
 
     def to_view(self, points: Points3) -> Points3:
-        """Points in W, shape (n, 3), in the coordinates that are drawn: the part about the origin, half as long as 1."""
+        """Points in W, shape (n, 3), as they are drawn: the part about the origin, its half diagonal 1."""
         return (points - self.center) / self.size
 
     def matrix(self, pose: Pose) -> Float[np.ndarray, "4 4"]:
@@ -155,3 +165,18 @@ class Scene:
 
 def _under(path: str, layers: list[str]) -> bool:
     return any(path == layer or path.startswith(layer + "/") for layer in layers)
+
+
+def changed_paths(before: tuple[Thing, ...], after: tuple[Thing, ...]) -> tuple[tuple[str, ...], frozenset[str]]:
+    """Paths that are gone, and those that are new or look different: what has to be drawn again after a change."""
+    old = {thing.path: thing for thing in before}
+    new = frozenset(thing.path for thing in after if thing.path not in old or not _alike(old[thing.path], thing))
+    kept = {thing.path for thing in after}
+    return tuple(path for path in old if path not in kept), new
+
+
+def _alike(first: Thing, second: Thing) -> bool:
+    if (first.color, first.opacity, type(first.shape)) != (second.color, second.opacity, type(second.shape)):
+        return False
+    pairs = ((getattr(first.shape, each.name), getattr(second.shape, each.name)) for each in fields(first.shape))
+    return first.shape is second.shape or all(one is other or np.array_equal(one, other) for one, other in pairs)

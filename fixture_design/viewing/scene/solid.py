@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,9 @@ from fixture_design.contacts import Contact, tangents, unit_normal
 from fixture_design.geometry import PartGeometry, Polygon, load_geometry, load_part, sharp_edges
 from fixture_design.layout import Body, Layout, Part, Pose, Verdict
 from fixture_design.viewing.palette import EDGES, PART, ROLE_COLORS
-from fixture_design.viewing.scene.drawn_sizes import FACET, SHEET
-from fixture_design.viewing.scene.scene import Thing
-from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Points3, Segments3, Vector3
+from fixture_design.viewing.scene.drawn_sizes import ASIDE, FACET, SHEET
+from fixture_design.viewing.scene.scene import Label, Thing
+from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Segments3, Vector3
 from fixture_design.viewing.scene.space import lifted, lifted_rows
 
 #: How much of what is behind a solid shows: contacts are inside and behind.
@@ -70,7 +71,7 @@ def _sheet(corners: np.ndarray, size: float) -> Solid:
 
     count, half = len(corners), SHEET * size / 2
     index = {tuple(corner): number for number, corner in enumerate(corners.tolist())}
-    pieces = shapely.constrained_delaunay_triangles(shapely.Polygon(corners)).geoms
+    pieces: Any = shapely.constrained_delaunay_triangles(shapely.Polygon(corners)).geoms
     flat = np.array([[index[xy] for xy in orient(piece).exterior.coords[:-1]] for piece in pieces])
     here, there = np.arange(count), (np.arange(count) + 1) % count
     walls = [np.column_stack([here, there, there + count]), np.column_stack([here, there + count, here + count])]
@@ -102,37 +103,42 @@ def part_things(solid: Solid | None, contacts: Sequence[Contact], size: float) -
 
 
 def _facets(contacts: Sequence[Contact], size: float) -> Iterator[Thing]:
-    """A small plate behind each contact, square to the normal."""
-    thick = 0.1 * FACET * size
+    """A small plate behind each normal, as far as the facets of its contact reach."""
     for number, contact in enumerate(contacts):
-        for k, normal in enumerate(contact.normals):
-            unit = lifted(unit_normal(normal))
-            first, second = tangents(unit)
-            axes = np.column_stack([first, second, unit])
-            middle = lifted(contact.point) - thick / 2 * unit
-            sides = np.array([FACET * size, FACET * size, thick])
+        planar = len(contact.point) == 2
+        normals = [(k, lifted(unit_normal(normal))) for k, clause in enumerate(contact.clauses) for normal in clause]
+        for k, (clause, unit) in enumerate(normals):
+            first = np.cross([0.0, 0.0, 1.0], unit) if planar else tangents(unit)[0]
+            axes = np.column_stack([first, np.cross(unit, first), unit])
+            sides = size * np.array([FACET, SHEET if planar else FACET, 0.1 * FACET])
+            others = [(other if mine != clause else -other) for j, (mine, other) in enumerate(normals) if j != k]
+            middle = lifted(contact.point) - sides[2] / 2 * unit + FACET * size / 2 * _aside(unit, others)
             yield Thing(f"part/facets/{number}/{k}", Box(middle, axes, sides), PART, _PART_OPACITY)
 
 
-def body_things(layout: Layout) -> Iterator[Thing]:
-    """The fixture bodies in the colour of their role."""
+def _aside(unit: Vector3, others: Sequence[Vector3]) -> Vector3:
+    """Along a facet away from where it ends at others: at convex edges against their normals, at concave along them."""
+    across = np.sum(others, axis=0) if others else np.zeros(3)
+    across = across - (across @ unit) * unit
+    length = float(np.linalg.norm(across))
+    return across / length if length > SHEET else np.zeros(3)
+
+
+def body_things(layout: Layout, size: float) -> Iterator[Thing | Label]:
+    """The fixture bodies in the colour of their role, with their names.
+
+    Args:
+        size: half diagonal of the part [m].
+    """
     for number, body in enumerate(layout.bodies):
         solid = _body(body)
         yield Thing(f"bodies/{number}/solid", solid.mesh, ROLE_COLORS[body.role], _BODY_OPACITY)
         if len(solid.edges):
             yield Thing(f"bodies/{number}/edges", Lines(solid.edges), ROLE_COLORS[body.role])
+        low, high = solid.mesh.vertices.min(axis=0), solid.mesh.vertices.max(axis=0)
+        above = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + ASIDE * size])
+        yield Label(f"bodies/{number}", body.name, above, ROLE_COLORS[body.role])
 
 
 def _body(body: Body) -> Solid:
     return _placed(load_part(Part(body.name, "urdf", body.file, None, 1.0, body.pose)), body.pose)
-
-
-def extent(things: tuple[Thing, ...]) -> Points3:
-    """Points that a picture of some things must hold, shape (n, 3)."""
-    from fixture_design.viewing.scene.tessellation import triangles_of  # noqa: PLC0415 - imports this module's types
-
-    found = [
-        thing.shape.segments.reshape(-1, 3) if isinstance(thing.shape, Lines) else triangles_of(thing.shape).vertices
-        for thing in things
-    ]
-    return np.vstack(found) if found else np.zeros((0, 3))

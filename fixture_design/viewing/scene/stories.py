@@ -25,7 +25,7 @@ from fixture_design.viewing.scene.balance_telling import told_balance, told_weig
 from fixture_design.viewing.scene.elements import element_path
 from fixture_design.viewing.scene.motion_telling import told_errors, told_motion, told_unbalanced, told_way
 from fixture_design.viewing.scene.scene import Story
-from fixture_design.viewing.scene.shapes import Points3, Vector3
+from fixture_design.viewing.scene.shapes import Mesh, Vector3
 from fixture_design.viewing.scene.telling import Stage, Told
 from fixture_design.viewing.words import evidence_in_words
 
@@ -33,20 +33,20 @@ from fixture_design.viewing.words import evidence_in_words
 _HOLDING = ("form_closure", "force_closure")
 
 
-def stories_of(layout: Layout, verdict: Verdict, vertices: Points3, center: Vector3, size: float) -> tuple[Story, ...]:
+def stories_of(layout: Layout, verdict: Verdict, surface: Mesh, center: Vector3, size: float) -> tuple[Story, ...]:
     """The answers of all groups in the order of the verdict; of groups with the same contacts the shared ones once."""
     required = {(requirement.group, requirement.require) for requirement in verdict.requirements}
     told = dict[tuple[str, ...], str]()
     stories: list[Story] = []
     for group in verdict.groups.values():
         first = told.setdefault(group.contacts, group.name) == group.name
-        inside = {contact for contact in group.contacts}
+        inside = set(group.contacts)
         contacts = [contact for contact in verdict.contacts if contact.name in inside]
         others = tuple(_outside(layout, verdict, contacts))
         for claim, finding in group.findings.items():
             if not first and claim not in USE_CLAIMS and (group.name, claim) not in required:
                 continue
-            stage = Stage(f"stories/{len(stories)}", layout, verdict, contacts, vertices, center, size)
+            stage = Stage(f"stories/{len(stories)}", layout, verdict, contacts, surface, center, size)
             shown = _told(stage, claim, finding) if contacts else Told()
             words = evidence_in_words(claim, finding, verdict.reference, verdict.length)
             stories.append(
@@ -109,7 +109,7 @@ def _told_use(stage: Stage, finding: Finding) -> Told:
 
 
 def first_story(stories: tuple[Story, ...], verdict: Verdict) -> int | None:
-    """The one to begin with: what is required and fails; else what carries the loads; else whether it is held at all."""
+    """The one to begin with: what is required and fails; else what carries the loads; else whether it is held."""
     order = [
         lambda story: story.required and story.answer is Answer.NO,
         lambda story: story.required and story.answer is Answer.UNDECIDED,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fixture_design.contacts import Contact
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.scene.scene import Animation, Label, Thing
-from fixture_design.viewing.scene.shapes import Points3, Vector3
+from fixture_design.viewing.scene.shapes import Mesh, Vector3
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Stage:
 
     Attributes:
         path: of the story's things.  contacts: of the group.
-        vertices: of the part in W, or of the contacts where there is none.
+        surface: of the part in W, or the pieces at the contacts where there is none.
         center, size: middle and half diagonal of the part [m].
     """
 
@@ -36,7 +36,7 @@ class Stage:
     layout: Layout
     verdict: Verdict
     contacts: Sequence[Contact]
-    vertices: Points3
+    surface: Mesh
     center: Vector3
     size: float
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
 import numpy as np
 
 from fixture_design.contacts import tangents
@@ -70,7 +73,7 @@ def _turned(start: Vector3, end: Vector3, profile: list[tuple[float, float]]) ->
     # tangents of a unit vector u are t and u X t: counter-clockwise about it
     circle = np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second)
     vertices, corners = [], []
-    for (r, a), (s, b) in zip(profile, profile[1:], strict=False):
+    for (r, a), (s, b) in pairwise(profile):
         base = sum(map(len, vertices))
         vertices += [start + a * axis + r * circle, start + b * axis + s * circle]
         corners.append(_strip(base, r > 0, s > 0))
@@ -138,3 +141,20 @@ def facet_soup(mesh: Mesh) -> tuple[Points3, Points3]:
 def _unit(vectors: Points3) -> Points3:
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.where(lengths > 0, vectors / np.where(lengths > 0, lengths, 1.0), [0.0, 0.0, 1.0])
+
+
+def joined(meshes: Sequence[Mesh]) -> Mesh:
+    """Some meshes, at least one, as one; it is smooth if the first one is."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
+    return Mesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(triangles), meshes[0].smooth)
+
+
+def extent(shapes: Iterable[Shape]) -> Points3:
+    """Points that a picture of some shapes, at least one, must hold, shape (n, 3)."""
+    return np.vstack(
+        [
+            shape.segments.reshape(-1, 3) if isinstance(shape, Lines) else triangles_of(shape).vertices
+            for shape in shapes
+        ]
+    )

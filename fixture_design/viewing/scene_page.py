@@ -1,6 +1,7 @@
 """The preview: one HTML file with the scene, its stories and the verdict, that loads nothing from anywhere.
 
-The page brings the viewer of the meshcat package along and forbids the browser any connection (Content-Security-Policy).
+The page brings the viewer of the meshcat package along and forbids the browser any connection
+(Content-Security-Policy).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.markup import Markup, bullets, joined, tag
 from fixture_design.viewing.meshcat_commands import commands, tracks
 from fixture_design.viewing.palette import ANSWER_SIGNS, MOTION, PUSH
-from fixture_design.viewing.scene import Label, Scene, Story, scene_of
+from fixture_design.viewing.scene import Camera, Label, Scene, Story, scene_of
 from fixture_design.viewing.summary import SUMMARY
 
 _POLICY = (
@@ -79,14 +80,14 @@ def _data(scene: Scene, planar: bool) -> dict[str, object]:
 
     told = tuple(thing for story in scene.stories for thing in story.things)
     packed = [umsgpack.packb(command.lower()) for command in commands(scene, (*scene.things, *told))]
-    camera = scene.to_view(np.array([scene.camera.eye, scene.camera.target]))
     return {
         "commands": [b64encode(each).decode() for each in packed],
         "paths": [thing.path for thing in scene.things],
         "labels": [_label(scene, label) for label in scene.labels],
         "layers": [{"path": layer.path, "number": number} for number, layer in enumerate(scene.layers)],
         "stories": [_story(scene, story) for story in scene.stories],
-        "camera": {"eye": camera[0].tolist(), "target": camera[1].tolist(), "aspect": _ASPECT},
+        "camera": _camera(scene, scene.camera),
+        "aspect": _ASPECT,
         "first": scene.first,
         "planar": planar,
     }
@@ -97,10 +98,16 @@ def _label(scene: Scene, label: Label) -> dict[str, object]:
     return {"path": label.path, "text": label.text, "point": point, "color": label.color}
 
 
+def _camera(scene: Scene, camera: Camera) -> dict[str, object]:
+    eye, target = np.round(scene.to_view(np.array([camera.eye, camera.target])), 6).tolist()
+    return {"eye": eye, "target": target}
+
+
 def _story(scene: Scene, story: Story) -> dict[str, object]:
     moving = story.animation
     return {
         "path": story.path,
+        "camera": _camera(scene, story.camera or scene.camera),
         "drawn": bool(story.things),
         "without": list(story.without),
         "labels": [_label(scene, label) for label in story.labels],
@@ -112,12 +119,13 @@ def _panel(scene: Scene) -> Markup:
     """Name, verdict, an answer a line, the legend."""
     word = str(scene.satisfied or "none")
     summary = tag("p", f"{ANSWER_SIGNS[scene.satisfied]} {SUMMARY[scene.satisfied]}", class_=f"summary {word}")
-    tools = tag(
-        "div", tag("button", "everything", id="overview", type="button"), tag("button", "stop or move", id="motion", type="button"),
-        tag("button", "view as at first", id="home", type="button"), class_="tools",
-    )  # fmt: skip
+    buttons = (("overview", "everything"), ("motion", "stop or move"), ("home", "view as at first"))
+    tools = tag("div", *(tag("button", text, id=name, type="button") for name, text in buttons), class_="tools")
     hint = tag("p", "Choose an answer to see what shows it. Drag to turn, wheel to come nearer.", class_="hint")
-    groups = [_group(name, list(members)) for name, members in groupby(enumerate(scene.stories), key=lambda pair: pair[1].group)]
+    groups = [
+        _group(name, list(members))
+        for name, members in groupby(enumerate(scene.stories), key=lambda pair: pair[1].group)
+    ]
     notes = tag("div", tag("h2", "notes"), bullets(scene.notes), class_="notes") if scene.notes else Markup("")
     return tag("div", tag("h1", scene.name), summary, tools, hint, *groups, _legend(scene), notes, id="panel")
 

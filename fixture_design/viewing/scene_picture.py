@@ -12,7 +12,7 @@ from fixture_design.errors import FileFormatError
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.drake_picture import render
 from fixture_design.viewing.label_places import placed_labels
-from fixture_design.viewing.palette import GROUND
+from fixture_design.viewing.palette import GROUND, MOTION, rgb
 from fixture_design.viewing.picture_panel import draw_panel, font
 from fixture_design.viewing.projection import Projection
 from fixture_design.viewing.scene import Lines, Scene, Story, Thing, scene_of
@@ -75,32 +75,46 @@ def _drawing(scene: Scene, story: Story | None, width: int, height: int) -> Any:
     from PIL import Image, ImageDraw  # noqa: PLC0415 - as above
 
     things, labels = scene.told(story)
-    fine = Projection.of(scene, width * _FINER, height * _FINER)
+    camera = scene.camera if story is None or story.camera is None else story.camera
+    fine = Projection.of(scene, camera, width * _FINER, height * _FINER)
     colors, depths = render(scene, things, story, fine)
-    image = Image.fromarray(_with_edges(colors, depths, scene, things, fine)).resize((width, height), Image.Resampling.LANCZOS)
-    view, letters, draw = Projection.of(scene, width, height), font(14), ImageDraw.Draw(image)
+    image = Image.fromarray(_with_edges(colors, depths, scene, things, story, fine)).resize(
+        (width, height), Image.Resampling.LANCZOS
+    )
+    view, letters, draw = Projection.of(scene, camera, width, height), font(14), ImageDraw.Draw(image)
     sizes = [letters.getbbox(label.text)[2:] for label in labels]
     anchors = view.pixels(scene.to_view(np.array([label.point for label in labels]).reshape(-1, 3)))[0]
     places = placed_labels(anchors, np.array(sizes, dtype=np.float64).reshape(-1, 2), width, height)
     for label, anchor, place in zip(labels, anchors, places, strict=True):
         if place.led:
             draw.line([tuple(anchor), place.nearest(anchor)], fill="#777777", width=1)
-        draw.text((place.left, place.top), label.text, font=letters, fill=label.color, stroke_width=2, stroke_fill=GROUND)
+        draw.text(
+            (place.left, place.top), label.text, font=letters, fill=label.color, stroke_width=2, stroke_fill=GROUND
+        )
     return image
 
 
-def _with_edges(colors: np.ndarray, depths: np.ndarray, scene: Scene, things: tuple[Thing, ...], view: Projection) -> np.ndarray:
+def _with_edges(
+    colors: np.ndarray,
+    depths: np.ndarray,
+    scene: Scene,
+    things: tuple[Thing, ...],
+    story: Story | None,
+    view: Projection,
+) -> np.ndarray:
     """Thin lines over the picture: dark where nothing is in front of them, faint where something is."""
     shades = colors.astype(np.float64)
     for thing in things:
         if isinstance(thing.shape, Lines):
-            _draw_lines(shades, depths, scene.to_view(thing.shape.segments.reshape(-1, 3)), thing.color, view)
+            ends = scene.to_view(thing.shape.segments.reshape(-1, 3))
+            _draw_lines(shades, depths, ends, thing.color, view)
+            if story is not None and story.animation is not None and thing.path.startswith(story.animation.path + "/"):
+                far = scene.matrix(story.animation.poses[-1])
+                _draw_lines(shades, depths, ends @ far[:3, :3].T + far[:3, 3], MOTION, view)
     return np.clip(np.round(shades), 0, 255).astype(np.uint8)
 
 
 def _draw_lines(shades: np.ndarray, depths: np.ndarray, ends: np.ndarray, color: str, view: Projection) -> None:
-    from fixture_design.viewing.palette import rgb  # noqa: PLC0415 - nothing else here needs numbers
-
     pixels = view.pixels(ends)[0].reshape(-1, 2, 2)
     ends = ends.reshape(-1, 2, 3)
     counts = np.clip(np.ceil(np.linalg.norm(pixels[:, 1] - pixels[:, 0], axis=1) * 1.5), 2, 8000).astype(np.int64)
