@@ -28,7 +28,7 @@ class Place:
         return min(max(float(point[0]), self.left), self.right), min(max(float(point[1]), self.top), self.bottom)
 
 
-def placed_labels(anchors: np.ndarray, sizes: np.ndarray, width: float, height: float) -> Sequence[Place]:
+def placed_labels(anchors: np.ndarray, sizes: np.ndarray, width: int, height: int) -> Sequence[Place]:
     """Places in the order of the labels; where there is no room at all, they stand where they belong.
 
     Args:
@@ -43,7 +43,7 @@ def placed_labels(anchors: np.ndarray, sizes: np.ndarray, width: float, height: 
     return taken
 
 
-def _candidates(anchor: np.ndarray, size: np.ndarray, width: float, height: float) -> Sequence[Place]:
+def _candidates(anchor: np.ndarray, size: np.ndarray, width: int, height: int) -> Sequence[Place]:
     """Centred on the anchor, then further and further off."""
     found = []
     offsets = [np.zeros(2)] + [

@@ -11,11 +11,13 @@ from fixture_design.layout import Answer
 ORANGE, SKY_BLUE, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
 BLUE, VERMILLION, PURPLE, BLACK = "#0072b2", "#d55e00", "#cc79a7", "#000000"
 
-ROLE_COLORS: dict[Role, str] = {"locator": BLUE, "support": PURPLE, "clamp": VERMILLION, "finger": GREEN}
+ROLE_COLORS: dict[Role, str] = {"locator": BLUE, "support": SKY_BLUE, "clamp": VERMILLION, "finger": GREEN}
+#: The same, dark enough for words on white.
+ROLE_INKS: dict[Role, str] = {"locator": "#005a8e", "support": "#1f6f9f", "clamp": "#a84600", "finger": "#00674c"}
 #: The part, its edges, the ground that pictures stand on.
 PART, EDGES, GROUND = "#b4bac2", "#3b424a", "#ffffff"
 #: What contacts do to the part, what else acts on it, where it can go, points that matter.
-PUSH, LOAD, MOTION, FEATURE = SKY_BLUE, BLACK, ORANGE, YELLOW
+PUSH, LOAD, MOTION, FEATURE = PURPLE, BLACK, ORANGE, YELLOW
 
 ANSWER_COLORS: dict[Answer | None, str] = {
     Answer.YES: GREEN, Answer.NO: VERMILLION, Answer.UNDECIDED: "#8a6d00", None: "#777777",

@@ -82,7 +82,7 @@ function tell(number) {
   byId("motion").disabled = moving === null;
   if (moving !== null) {
     const tracks = moving.tracks.map((track) => ({ ...track, keys: track.keys.map((key) => ({ ...key })) }));
-    const clip = { fps: 30, name: "motion", tracks };
+    const clip = { fps: 1, name: "motion", tracks };
     viewer.set_animation([{ path: ["scene"].concat(moving.path.split("/")), clip }],
       { play: playing, repetitions: FOR_EVER, loopMode: LOOP });
   }

@@ -19,7 +19,7 @@ def told_weights(stage: Stage, branches: tuple[Weights, ...], finding: Finding) 
     pushes = weight_pushes(branches[0], stage.contacts, finding)
     scale = scale_for(longest_of(pushes), stage.size)
     several = f" (the first of {len(branches)} branches)" if len(branches) > 1 else ""
-    caption = f"Blue arrows: pushes that balance each other; their lengths are the weights{several}."
+    caption = f"Purple arrows: pushes that balance each other; their lengths are the weights{several}."
     things = tuple(push_things(stage.path, pushes, scale, stage.size))
     return Told(caption, things, without=(*PLAIN, "normals", "cones"))
 
@@ -43,7 +43,7 @@ def told_balance(stage: Stage, balance: Balance, load: LoadVerdict | None, weigh
         if drawn:
             labels.append(Label(stage.path, name, tail(wrench, at, scale, stage.size), LOAD))
     longest = f"{longest_of(pushes):.3g} N"
-    caption = f"Blue arrows: forces of the contacts on the part, the longest {longest}; black: what they carry."
+    caption = f"Purple arrows: forces of the contacts on the part, the longest {longest}; black: what they carry."
     return Told(caption, tuple(things), tuple(labels), without=(*PLAIN, "normals"))
 
 

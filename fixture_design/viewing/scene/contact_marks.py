@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from fixture_design.contacts import Contact, unit_normal
 from fixture_design.layout import Layout, element_name
-from fixture_design.viewing.palette import BLACK, ROLE_COLORS
+from fixture_design.viewing.palette import BLACK, ROLE_COLORS, ROLE_INKS
 from fixture_design.viewing.scene.drawn_sizes import ASIDE, CONE, DOT, NORMAL, THIN
 from fixture_design.viewing.scene.scene import Label, Thing
 from fixture_design.viewing.scene.shapes import Arrow, Cylinder, Sphere
@@ -34,4 +34,4 @@ def contact_things(layout: Layout, contacts: Sequence[Contact], size: float) -> 
                 yield Thing(f"cones/{number}/{k}", cone, color, _CONE_OPACITY)
         if element_name(contact.name) not in owners:
             away = lifted(unit_normal(contact.normals[0]))
-            yield Label(f"contacts/{number}", contact.name, point + 2 * ASIDE * size * away, color)
+            yield Label(f"contacts/{number}", contact.name, point + 2 * ASIDE * size * away, ROLE_INKS[contact.role])

@@ -19,7 +19,7 @@ from fixture_design.layout import (
     SphereTip,
     element_name,
 )
-from fixture_design.viewing.palette import ROLE_COLORS
+from fixture_design.viewing.palette import ROLE_COLORS, ROLE_INKS
 from fixture_design.viewing.scene.drawn_sizes import ASIDE, FOOT, STEM, STEM_LENGTH
 from fixture_design.viewing.scene.scene import Label, Thing
 from fixture_design.viewing.scene.shapes import Box, Cylinder, Mesh, Points3, Shape, Sphere, Vector3
@@ -75,7 +75,7 @@ def element_things(layout: Layout, contacts: Sequence[Contact], size: float) -> 
         ]
         for k, shape in enumerate(shapes):
             yield Thing(f"{path}/{k}", shape, color)
-        yield Label(path, element.name, end + (ASIDE * size + radius) * stand.away, color)
+        yield Label(path, element.name, end + (ASIDE * size + radius) * stand.away, ROLE_INKS[element.role])
 
 
 def _length(radius: float, size: float) -> float:

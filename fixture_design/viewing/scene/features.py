@@ -31,7 +31,7 @@ def feature_things(layout: Layout, verdict: Verdict, size: float) -> Iterator[Th
         yield Thing(f"{path}/point", Sphere(point, 1.3 * THICK * size), FEATURE)
         yield Thing(f"{path}/direction", Cylinder(point - half, point + half, 0.5 * THICK * size), FEATURE)
         words = _words(errors[feature.name]) if feature.name in errors else feature.name
-        yield Label(path, words, point + half + ASIDE * size * way, BLACK)
+        yield Label(path, words, point + (TOLERANCE + ASIDE) * size * way, BLACK)
 
 
 def _words(error: FeatureError) -> str:

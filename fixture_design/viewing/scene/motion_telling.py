@@ -66,7 +66,7 @@ def told_way(stage: Stage, ways: StraightWays) -> Told:
     if ways.direction is None:
         pushes = _normals_that_balance(stage, ways)
         scale = scale_for(max((float(np.linalg.norm(force)) for _, _, force in pushes), default=0.0), stage.size)
-        caption = "No straight way: blue arrows, as long as their weights, balance each other."
+        caption = "No straight way: purple arrows, as long as their weights, balance each other."
         return Told(caption, tuple(push_things(stage.path, pushes, scale, stage.size)), without=without)
     way = lifted(ways.direction)
     things: list[Thing] = [

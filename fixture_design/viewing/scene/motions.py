@@ -28,7 +28,8 @@ _PATH, _ALIKE = 40, 0.05
 def screw_pose(twist: Twist, amount: float) -> Pose:
     """The screw motion that begins with a displacement, followed for ``amount``: exp(amount [dx; dtheta]).
 
-    R by Rodrigues' formula, p = (1 - R)(w X v) / |w|^2 + w (w . v) amount / |w|^2 for w = dtheta, v = dx.
+    R by Rodrigues' formula; p = (a 1 + (1 - cos(a w)) / w K + (a - sin(a w) / w) K^2) dx, with a the amount, w = |dtheta|
+    and K the cross product with dtheta / w.
     """
     turn = float(np.linalg.norm(twist.about))
     if turn == 0:
@@ -37,9 +38,11 @@ def screw_pose(twist: Twist, amount: float) -> Pose:
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     angle = amount * turn
     rotation = np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
-    center = np.cross(twist.about, twist.along) / turn**2
-    advance = twist.about * float(twist.about @ twist.along) * amount / turn**2
-    return Pose(rotation, center - rotation @ center + advance)
+    # 1 - cos by half the angle: small turns are translations, without cancellation
+    moved = (
+        amount * np.eye(3) + 2 * np.sin(angle / 2) ** 2 / turn * skew + (amount - np.sin(angle) / turn) * skew @ skew
+    )
+    return Pose(rotation, moved @ twist.along)
 
 
 def shown_amount(twist: Twist, vertices: Points3, size: float) -> float:

@@ -11,14 +11,14 @@ import numpy as np
 from fixture_design.contacts import Contact, tangents, unit_normal
 from fixture_design.geometry import PartGeometry, Polygon, load_geometry, load_part, sharp_edges
 from fixture_design.layout import Body, Layout, Part, Pose, Verdict
-from fixture_design.viewing.palette import EDGES, PART, ROLE_COLORS
+from fixture_design.viewing.palette import EDGES, PART, ROLE_COLORS, ROLE_INKS
 from fixture_design.viewing.scene.drawn_sizes import ASIDE, FACET, SHEET
 from fixture_design.viewing.scene.scene import Label, Thing
 from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Segments3, Vector3
 from fixture_design.viewing.scene.space import lifted, lifted_rows
 
 #: How much of what is behind a solid shows: contacts are inside and behind.
-_PART_OPACITY, _BODY_OPACITY = 0.5, 0.35
+_PART_OPACITY, _BODY_OPACITY = 0.42, 0.35
 
 #: Parts with less than this of sharp edges a triangle are drawn with them; else they are all edges.
 _EDGES_A_TRIANGLE = 1.0
@@ -137,7 +137,7 @@ def body_things(layout: Layout, size: float) -> Iterator[Thing | Label]:
             yield Thing(f"bodies/{number}/edges", Lines(solid.edges), ROLE_COLORS[body.role])
         low, high = solid.mesh.vertices.min(axis=0), solid.mesh.vertices.max(axis=0)
         above = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + ASIDE * size])
-        yield Label(f"bodies/{number}", body.name, above, ROLE_COLORS[body.role])
+        yield Label(f"bodies/{number}", body.name, above, ROLE_INKS[body.role])
 
 
 def _body(body: Body) -> Solid:
