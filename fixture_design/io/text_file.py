@@ -1,4 +1,4 @@
-"""Writing a text file at once, so that a crash, a full disk or a reader in between never meets half a file."""
+"""Writing a file at once, so that a crash, a full disk or a reader in between never meets half a file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,16 @@ from fixture_design.errors import FileFormatError
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replaces the file by ``text`` (UTF-8); what was there stays if that fails. A link's target is replaced.
+    """Replaces the file by ``text`` (UTF-8, line ends as they are), see `write_bytes`.
+
+    Raises:
+        FileFormatError: as there.
+    """
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Replaces the file by ``content``; what was there stays if that fails. A link's target is replaced.
 
     Raises:
         FileFormatError: the folder is not there, not permitted, the disk is full, or ``path`` is a folder.
@@ -20,16 +29,16 @@ def write_text(path: Path, text: str) -> None:
     try:
         if target.is_dir():
             raise IsADirectoryError(f"{path} is a folder")
-        _replace(target, text)
+        _replace(target, content)
     except OSError as cause:
         raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
 
 
-def _replace(target: Path, text: str) -> None:
+def _replace(target: Path, content: bytes) -> None:
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
     try:
-        with open(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with open(handle, "wb") as file:
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
         os.chmod(temporary, _mode(target))

@@ -38,12 +38,17 @@ def started(port: int | None = None) -> Meshcat:
     return meshcat
 
 
-def draw(meshcat: Meshcat, scene: Scene, story: Story | None = None, before: Scene | None = None) -> None:
+def draw(
+    meshcat: Meshcat, scene: Scene, story: Story | None = None, before: tuple[Thing, ...] | None = None
+) -> tuple[Thing, ...]:
     """Draws a scene while a story is told (by default the first one), and plays its motion.
 
     Args:
-        before: what was drawn last: then only what differs is sent. Its center and size must be the same, and its
-            camera stays.
+        before: what the last call returned: then only what differs is sent, and the camera stays. Center and size of
+            both scenes must be the same.
+
+    Returns:
+        the things that are there now.
     """
     board: Any = meshcat
     story = story or (None if scene.first is None else scene.stories[scene.first])
@@ -54,8 +59,7 @@ def draw(meshcat: Meshcat, scene: Scene, story: Story | None = None, before: Sce
         board.SetCameraPose(eye, target)
         drawn = things
     else:
-        board.Delete(f"{ROOT}/stories")
-        gone, new = changed_paths(before.things, things)
+        gone, new = changed_paths(before, things)
         for path in gone:
             board.Delete(f"{ROOT}/{path}")
         drawn = tuple(thing for thing in things if thing.path in new)
@@ -65,6 +69,7 @@ def draw(meshcat: Meshcat, scene: Scene, story: Story | None = None, before: Sce
     for number, label in enumerate(labels):
         _write(board, scene, label, number)
     _play(board, scene, story)
+    return things
 
 
 def _draw(board: Any, scene: Scene, thing: Thing) -> None:

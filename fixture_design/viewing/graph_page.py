@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from io import BytesIO
-
 from fixture_design.assembly import ContactStateGraph
-from fixture_design.viewing.graph_picture import draw_graph, graph_picture
+from fixture_design.viewing.graph_picture import graph_picture
 from fixture_design.viewing.markup import Markup, table, tag
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
@@ -35,14 +33,3 @@ def graph_page(graph: ContactStateGraph) -> str:
         table(["state", "contacts"], rows),
     )  # fmt: skip
     return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
-
-
-def graph_png(graph: ContactStateGraph) -> bytes:
-    """The same picture as PNG.
-
-    Raises:
-        UnsupportedError: a graph in space.
-    """
-    file = BytesIO()
-    draw_graph(graph, file)
-    return file.getvalue()

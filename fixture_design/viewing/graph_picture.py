@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from io import BytesIO
 from itertools import groupby
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 
 from fixture_design.assembly import AssemblyBody, ContactState, ContactStateGraph
-from fixture_design.errors import FileFormatError, UnsupportedError
-from fixture_design.io.text_file import write_text
+from fixture_design.errors import UnsupportedError
+from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Pose
 from fixture_design.viewing.markup import Markup, tag
 
@@ -38,12 +38,7 @@ def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
     if path.suffix.lower() == ".svg":
         write_text(path, graph_picture(graph) + "\n")
     elif path.suffix.lower() == ".png":
-        _require_planar(graph)
-        try:
-            with path.open("wb") as file:
-                draw_graph(graph, file)
-        except OSError as cause:
-            raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
+        write_bytes(path, graph_png(graph))
     else:
         raise UnsupportedError("graphs are drawn as SVG or PNG", source=path, expected="a name with .svg or .png")
 
@@ -105,7 +100,7 @@ def _drawing(graph: ContactStateGraph, state: ContactState, place: tuple[float, 
     return tag("g", title, frame, inner, name)
 
 
-def draw_graph(graph: ContactStateGraph, file: BinaryIO) -> None:
+def graph_png(graph: ContactStateGraph) -> bytes:
     """The same drawing as PNG by matplotlib, which Drake brings along.
 
     Raises:
@@ -133,7 +128,9 @@ def draw_graph(graph: ContactStateGraph, file: BinaryIO) -> None:
             axes.add_patch(shape)
             shape.set_clip_path(frame)
         axes.text(place[0] + _WIDTH / 2, place[1] + _HEIGHT + _TEXT, state.id, ha="center", fontsize=_TEXT * 0.7)
+    file = BytesIO()
     FigureCanvasAgg(figure).print_png(file)
+    return file.getvalue()
 
 
 def _frame(state: ContactState) -> str:

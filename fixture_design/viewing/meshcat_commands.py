@@ -47,12 +47,16 @@ def commands(scene: Scene, things: tuple[Thing, ...]) -> Iterator[Any]:
     fov: Any = float(np.degrees(scene.camera.fov))
     near: Any = 0.02
     camera = PerspectiveCamera(fov=fov, aspect=1, near=near, far=200)
+    camera.uuid = "camera"
     yield SetObject(camera, None, Path(("Cameras", "default", "rotated")))
     x, y, z = scene.to_view(scene.camera.eye[None])[0].tolist()
     # there the world is y up
     yield SetProperty("position", [x, z, -y], Path(("Cameras", "default", "rotated", "<object>")))
     for thing in things:
-        yield SetObject(_object(scene, thing), None, Path(("scene", *thing.path.split("/"))))
+        shown = _object(scene, thing)
+        # not the random ones: the same scene is the same page
+        shown.uuid, shown.geometry.uuid, shown.material.uuid = (f"{thing.path}:{kind}" for kind in "ogm")
+        yield SetObject(shown, None, Path(("scene", *thing.path.split("/"))))
 
 
 def _object(scene: Scene, thing: Thing) -> Any:

@@ -14,15 +14,17 @@ from pathlib import Path
 from fixture_design.assembly import ContactStateGraph
 from fixture_design.design import DesignResult
 from fixture_design.errors import InputError
+from fixture_design.geometry.input_files import input_files
 from fixture_design.io import read_graph, read_layout
 from fixture_design.io.documents import read_document
-from fixture_design.io.text_file import write_text
-from fixture_design.layout import Layout, Verdict, named_files
-from fixture_design.viewing.graph_page import graph_page, graph_png
+from fixture_design.io.text_file import write_bytes, write_text
+from fixture_design.layout import Layout, Verdict
+from fixture_design.viewing.graph_page import graph_page
+from fixture_design.viewing.graph_picture import graph_png
 from fixture_design.viewing.report import refuse_inputs
 from fixture_design.viewing.scene import Scene, scene_of
 from fixture_design.viewing.scene_page import scene_page
-from fixture_design.viewing.scene_picture import scene_picture, write_picture
+from fixture_design.viewing.scene_picture import scene_picture
 
 #: Height of a preview in a notebook [pixels].
 _HEIGHT = 560
@@ -68,7 +70,7 @@ class Preview:
         path = Path(path)
         refuse_inputs(path, self.inputs)
         if path.suffix.lower() == ".png":
-            write_picture(self.picture(), path)
+            write_bytes(path, self.picture())
         else:
             write_text(path, self.html)
 
@@ -100,7 +102,7 @@ def preview(thing: Layout | DesignResult | ContactStateGraph | str | Path, verdi
         return preview(thing.layout, thing.verdict)
     from fixture_design.verification import verify  # noqa: PLC0415 - only where nobody has verified yet
 
-    inputs = named_files(thing) if thing.source is None else (thing.source, *named_files(thing))
+    inputs = tuple(given.file for given in input_files(thing))
     return Preview(scene_of(thing, verdict or verify(thing)), inputs, thing.space == "planar")
 
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fixture_design.errors import FileFormatError
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.drake_picture import render
 from fixture_design.viewing.label_places import placed_labels
@@ -57,18 +55,6 @@ def scene_picture(scene: Scene, width: int = 1280, height: int = 860, story: int
     file = BytesIO()
     image.save(file, "PNG", optimize=True)
     return file.getvalue()
-
-
-def write_picture(content: bytes, path: Path) -> None:
-    """Writes a PNG.
-
-    Raises:
-        FileFormatError: the file cannot be written.
-    """
-    try:
-        path.write_bytes(content)
-    except OSError as cause:
-        raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
 
 
 def _drawing(scene: Scene, story: Story | None, width: int, height: int) -> Any:

@@ -28,8 +28,8 @@ _PATH, _ALIKE = 40, 0.05
 def screw_pose(twist: Twist, amount: float) -> Pose:
     """The screw motion that begins with a displacement, followed for ``amount``: exp(amount [dx; dtheta]).
 
-    R by Rodrigues' formula; p = (a 1 + (1 - cos(a w)) / w K + (a - sin(a w) / w) K^2) dx, with a the amount, w = |dtheta|
-    and K the cross product with dtheta / w.
+    R by Rodrigues' formula; p = (a 1 + (1 - cos(a w)) / w K + (a - sin(a w) / w) K^2) dx, with a the amount,
+    w = |dtheta| and K the cross product with dtheta / w.
     """
     turn = float(np.linalg.norm(twist.about))
     if turn == 0:
