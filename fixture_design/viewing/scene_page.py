@@ -152,7 +152,7 @@ def _legend(scene: Scene) -> Markup:
         tag("label", _checkbox(f"layer-{number}", not layer.hidden), _mark(layer.mark, layer.color), layer.text)
         for number, layer in enumerate(scene.layers)
     ]
-    said = (("arrow", PUSH, "pushes that balance, as long as they are large"), ("arrow", MOTION, "how the part moves"))
+    said = (("arrow", PUSH, "pushes that balance, to scale"), ("arrow", MOTION, "how the part moves"))
     rows += [tag("label", tag("span", style="width: 13px"), _mark(mark, color), text) for mark, color, text in said]
     return tag("div", *rows, class_="legend")
 

@@ -17,8 +17,10 @@ from fixture_design.viewing.scene import Lines, Scene, Story, Thing, scene_of
 
 #: Pixels are rendered this many times finer each way, which smooths edges.
 _FINER = 2
-#: Part of the picture that the panel takes, and its width at least and at most [pixels].
-_PANEL, _PANEL_LEAST, _PANEL_MOST = 0.3, 200, 380
+#: Part of the picture that the panel takes.
+_PANEL = 0.3
+#: A picture of usual size, in which letters have theirs; how much smaller and larger they may be.
+_USUAL, _SMALLEST, _LARGEST, _LETTERS = (1280, 860), 0.6, 3.0, 14.0
 #: Edges: opacity where seen and where hidden, samples a pixel, and how much nearer counts as in front [-].
 _SEEN, _HIDDEN, _NEARER = 1.0, 0.22, 4e-3
 
@@ -48,16 +50,21 @@ def scene_picture(scene: Scene, width: int = 1280, height: int = 860, story: int
 
     number = scene.first if story is None else story
     told = None if number is None else scene.stories[number]
-    panel = int(np.clip(_PANEL * width, _PANEL_LEAST, min(_PANEL_MOST, width // 2)))
+    panel, scale = int(_PANEL * width), _scale(width, height)
     image = Image.new("RGB", (width, height), GROUND)
-    image.paste(_drawing(scene, told, width - panel, height), (0, 0))
-    draw_panel(ImageDraw.Draw(image), scene, told, (width - panel, 0, width, height))
+    image.paste(_drawing(scene, told, width - panel, height, scale), (0, 0))
+    draw_panel(ImageDraw.Draw(image), scene, told, (width - panel, 0, width, height), scale)
     file = BytesIO()
     image.save(file, "PNG", optimize=True)
     return file.getvalue()
 
 
-def _drawing(scene: Scene, story: Story | None, width: int, height: int) -> Any:
+def _scale(width: int, height: int) -> float:
+    """Of letters: as the picture, within what can be read."""
+    return float(np.clip(min(width / _USUAL[0], height / _USUAL[1]), _SMALLEST, _LARGEST))
+
+
+def _drawing(scene: Scene, story: Story | None, width: int, height: int, scale: float) -> Any:
     from PIL import Image, ImageDraw  # noqa: PLC0415 - as above
 
     things, labels = scene.told(story)
@@ -67,7 +74,7 @@ def _drawing(scene: Scene, story: Story | None, width: int, height: int) -> Any:
     image = Image.fromarray(_with_edges(colors, depths, scene, things, story, fine)).resize(
         (width, height), Image.Resampling.LANCZOS
     )
-    view, letters, draw = Projection.of(scene, camera, width, height), font(14), ImageDraw.Draw(image)
+    view, letters, draw = Projection.of(scene, camera, width, height), font(_LETTERS * scale), ImageDraw.Draw(image)
     sizes = [letters.getbbox(label.text)[2:] for label in labels]
     anchors = view.pixels(scene.to_view(np.array([label.point for label in labels]).reshape(-1, 3)))[0]
     places = placed_labels(anchors, np.array(sizes, dtype=np.float64).reshape(-1, 2), width, height)
