@@ -20,6 +20,10 @@ def preview(
     png: Annotated[
         Path | None, typer.Option("--png", help="Picture, drawn without a browser.", metavar="OUT.png")
     ] = None,
+    show: Annotated[
+        str | None,
+        typer.Option("--show", help="The answer to begin with, as locators:form_closure.", metavar="GROUP:QUESTION"),
+    ] = None,
 ) -> None:
     """Write a preview: the part, what touches it, what acts on it, how it is held or gets away, and the verdict.
 
@@ -30,7 +34,7 @@ def preview(
     if out is None and png is None:
         out = Path(f"{file.name.split('.')[0]}.html")
     try:
-        shown = preview_of(file)
+        shown = preview_of(file, show=show)
     except InputError as error:
         raise error.within(file) from error
     for path in filter(None, (out, png)):

@@ -51,7 +51,7 @@ def draw_panel(draw: Any, scene: Scene, told: Story | None, box: tuple[int, int,
     pen.y += _LINE * scale
     for mark, color, text in rows:
         _mark(pen, mark, color)
-        pen.words(text, _SMALL, _INK, indent=24, most=1)
+        pen.words(text, _SMALL, _INK, indent=24.0, most=1)
 
 
 def legend_rows(scene: Scene) -> Iterator[tuple[str, str, str]]:
@@ -96,7 +96,7 @@ class _Pen:
         return line.rstrip() + "…"
 
     def words(
-        self, text: str, size: float, color: str, *, bold: bool = False, indent: float = 0, most: int = 1
+        self, text: str, size: float, color: str, *, bold: bool = False, indent: float = 0.0, most: int = 1
     ) -> None:  # fmt: skip
         for line in self.lines(text, size, bold, indent, most):
             place = (self.left + indent * self.scale, self.y)
@@ -125,7 +125,7 @@ def _answers(pen: _Pen, stories: tuple[Story, ...], told: Story | None, below: f
 
 def _height(pen: _Pen, told: Story) -> float:
     """What the answer that is told needs, with its group's name."""
-    lines = sum(len(pen.lines(text, _SMALL, False, 12, _MOST_LINES)) for text in (told.words, told.caption) if text)
+    lines = sum(len(pen.lines(text, _SMALL, False, 12.0, _MOST_LINES)) for text in (told.words, told.caption) if text)
     return lines * pen.step(_SMALL) + 2 * pen.step(_TEXT) + _LINE * pen.scale
 
 
@@ -136,10 +136,10 @@ def _answer(pen: _Pen, story: Story, *, told: bool) -> None:
     pen.draw.text((pen.left, top), ANSWER_SIGNS[story.answer], font=sign, fill=ANSWER_COLORS[story.answer])
     said = "no contacts" if story.answer is None else str(story.answer)
     asked = " (required)" if story.required else ""
-    pen.words(f"{story.claim.replace('_', ' ')}: {said}{asked}", _TEXT, _INK, bold=told, indent=20)
+    pen.words(f"{story.claim.replace('_', ' ')}: {said}{asked}", _TEXT, _INK, bold=told, indent=20.0)
     if told:
         for text in filter(None, (story.words, story.caption)):
-            pen.words(text, _SMALL, _DIM, indent=12, most=_MOST_LINES)
+            pen.words(text, _SMALL, _DIM, indent=12.0, most=_MOST_LINES)
         edge = pen.left - 8 * pen.scale
         pen.draw.rectangle((edge, top, edge + 3 * pen.scale, pen.y - _LINE * pen.scale), fill=MOTION)
 

@@ -7,13 +7,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 
 from fixture_design.assembly import ContactStateGraph
 from fixture_design.design import DesignResult
-from fixture_design.errors import InputError
+from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.geometry.input_files import input_files
 from fixture_design.io import read_graph, read_layout
 from fixture_design.io.documents import read_document
@@ -79,19 +79,25 @@ class Preview:
         return f'<div style="width: 100%">{frame}</div>'
 
 
-def preview(thing: Layout | DesignResult | ContactStateGraph | str | Path, verdict: Verdict | None = None) -> Preview:
+def preview(
+    thing: Layout | DesignResult | ContactStateGraph | str | Path,
+    verdict: Verdict | None = None,
+    show: str | None = None,
+) -> Preview:
     """A preview of a layout, of what `design` found, of a contact-state graph in the plane, or of a file of these.
 
     Args:
         verdict: of the layout, where it is known already; else it is verified.
+        show: the answer to begin with, as "locators:form_closure"; by default the one that matters most.
 
     Raises:
         InputError: the file or the layout cannot be used; a design that found no layout.
         UnsupportedError: a graph in space.
+        UnknownNameError: ``show`` is no answer that has something to see.
     """
     if isinstance(thing, str | Path):
         path = Path(thing)
-        found = preview(read_graph(path) if _is_graph(path) else read_layout(path))
+        found = preview(read_graph(path) if _is_graph(path) else read_layout(path), verdict, show)
         return Preview(found.shown, (path, *found.inputs), found.planar)
     if isinstance(thing, ContactStateGraph):
         graph_page(thing)  # in space it says that it is not drawn
@@ -99,11 +105,21 @@ def preview(thing: Layout | DesignResult | ContactStateGraph | str | Path, verdi
     if isinstance(thing, DesignResult):
         if thing.layout is None:
             raise InputError(f"the design has no layout to show: {thing.reason or 'none was found'}")
-        return preview(thing.layout, thing.verdict)
+        return preview(thing.layout, thing.verdict, show)
     from fixture_design.verification import verify  # noqa: PLC0415 - only where nobody has verified yet
 
     inputs = tuple(given.file for given in input_files(thing))
-    return Preview(scene_of(thing, verdict or verify(thing)), inputs, thing.space == "planar")
+    scene = _beginning(scene_of(thing, verdict or verify(thing)), show)
+    return Preview(scene, inputs, thing.space == "planar")
+
+
+def _beginning(scene: Scene, show: str | None) -> Scene:
+    if show is None:
+        return scene
+    known = [f"{story.group}:{story.claim}" for story in scene.stories if story.shown]
+    if show not in known:
+        raise UnknownNameError("answer with something to see", show, set(known))
+    return replace(scene, first=[f"{story.group}:{story.claim}" for story in scene.stories].index(show))
 
 
 def _is_graph(path: Path) -> bool:

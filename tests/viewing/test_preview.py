@@ -103,6 +103,13 @@ def test_a_real_part_of_many_triangles(tmp_path: Path) -> None:
     assert len(preview_page(layout, fd.verify(layout)).encode()) < MOST
 
 
+def test_a_preview_begins_with_the_answer_that_is_asked_for() -> None:
+    shown = fd.preview(BRACKET, show="locators:form_closure")
+    first = data_of(shown.html)["first"]
+    story = looked_at(BRACKET)[2].stories[first]
+    assert (story.group, story.claim) == ("locators", "form_closure")
+
+
 def test_a_preview_is_saved_and_shown_in_notebooks(tmp_path: Path) -> None:
     shown = fd.preview(PLANAR)
     shown.save(tmp_path / "out.html")
@@ -189,6 +196,7 @@ def test_preview_on_the_command_line(command: Callable, tmp_path: Path, monkeypa
     [
         (["preview", "missing.yaml"], "missing.yaml"),
         (["preview", PLANAR, "--png", "picture.gif"], "PNG"),
+        (["preview", PLANAR, "--show", "all:nothing"], "all:form_closure"),
         (["preview", PLANAR, "-o", "no/such/folder.html"], "no/such/folder.html"),
         (["verify", PLANAR, BRACKET, "--html", "x.html"], "one layout"),
         (["verify", PLANAR, "--html", PLANAR], "input"),

@@ -18,7 +18,7 @@ from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Segments3, Vec
 from fixture_design.viewing.scene.space import lifted, lifted_rows
 
 #: How much of what is behind a solid shows: contacts are inside and behind.
-_PART_OPACITY, _BODY_OPACITY = 0.42, 0.35
+_PART_OPACITY, _BODY_OPACITY = 0.36, 0.3
 
 #: Parts with less than this of sharp edges a triangle are drawn with them; else they are all edges.
 _EDGES_A_TRIANGLE = 1.0
@@ -135,9 +135,8 @@ def body_things(layout: Layout, size: float) -> Iterator[Thing | Label]:
         yield Thing(f"bodies/{number}/solid", solid.mesh, ROLE_COLORS[body.role], _BODY_OPACITY)
         if len(solid.edges):
             yield Thing(f"bodies/{number}/edges", Lines(solid.edges), ROLE_COLORS[body.role])
-        low, high = solid.mesh.vertices.min(axis=0), solid.mesh.vertices.max(axis=0)
-        above = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + ASIDE * size])
-        yield Label(f"bodies/{number}", body.name, above, ROLE_INKS[body.role])
+        corner = solid.mesh.vertices.min(axis=0) - np.array([0.0, 0.0, ASIDE * size])
+        yield Label(f"bodies/{number}", body.name, corner, ROLE_INKS[body.role])
 
 
 def _body(body: Body) -> Solid:
