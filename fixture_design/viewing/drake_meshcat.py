@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -96,20 +97,29 @@ def _write(board: Any, scene: Scene, label: Label, number: int) -> None:
 
 def _outline(scene: Scene, label: Label) -> tuple[Points3, Points3]:
     """Ends of the letters' outlines in the coordinates of the view, centred on the label's point."""
-    from matplotlib.textpath import TextPath  # noqa: PLC0415 - a third of a second
-
-    polygons = TextPath((0, 0), label.text, size=_LETTERS, usetex=False).to_polygons()
+    polygons = _letters(label.text)
     if not polygons:
         return np.zeros((0, 3)), np.zeros((0, 3))
     camera = scene.camera
     away = (camera.eye - camera.target) / np.linalg.norm(camera.eye - camera.target)
     right = np.cross(camera.up, away)
     right /= np.linalg.norm(right)
+    at = scene.to_view(label.point[None])[0]
+    placed = [at + each @ np.array([right, np.cross(away, right)]) for each in polygons]
+    return np.vstack([each[:-1] for each in placed]), np.vstack([each[1:] for each in placed])
+
+
+@lru_cache(maxsize=1024)
+def _letters(text: str) -> tuple[np.ndarray, ...]:
+    """The outlines of words, each of shape (n, 2), about their middle."""
+    from matplotlib.textpath import TextPath  # noqa: PLC0415 - a third of a second
+
+    polygons = [np.asarray(each) for each in TextPath((0, 0), text, size=_LETTERS, usetex=False).to_polygons()]
+    if not polygons:
+        return ()
     everything = np.vstack(polygons)
     middle = (everything.min(axis=0) + everything.max(axis=0)) / 2
-    at = scene.to_view(label.point[None])[0]
-    placed = [at + (np.asarray(each) - middle) @ np.array([right, np.cross(away, right)]) for each in polygons]
-    return np.vstack([each[:-1] for each in placed]), np.vstack([each[1:] for each in placed])
+    return tuple(each - middle for each in polygons)
 
 
 def _play(board: Any, scene: Scene, story: Story | None) -> None:

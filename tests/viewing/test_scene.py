@@ -18,6 +18,7 @@ from fixture_design.contacts import unit_normal, velocity
 from fixture_design.layout import Answer, Balance, LoadsHeld, Motion, Pose, StraightWays
 from fixture_design.viewing.label_places import placed_labels
 from fixture_design.viewing.palette import ANSWER_COLORS, ROLE_COLORS, rgb
+from fixture_design.viewing.projection import Projection
 from fixture_design.viewing.rounds import rounds
 from fixture_design.viewing.scene import (
     Arrow,
@@ -34,6 +35,7 @@ from fixture_design.viewing.scene import (
 from fixture_design.viewing.scene.arrows import bent_arrow
 from fixture_design.viewing.scene.motions import screw_pose
 from fixture_design.viewing.scene.space import Twist, lifted
+from fixture_design.viewing.scene.tessellation import extent
 
 URDF = Path(__file__).resolve().parents[2] / "urdf"
 BRACKET = URDF / "bracket" / "bracket.layout.yaml"
@@ -269,6 +271,74 @@ def test_only_what_changed_is_drawn_again() -> None:
         f"elements/clamp/6/{k}" for k in range(3)
     }
     assert changed_paths(scene.things, scene.things) == ((), frozenset())
+
+
+def weak() -> Layout:
+    """The bracket with clamps that do not hold its load, and a tolerance that is not kept."""
+    layout = read_layout(BRACKET)
+    elements = [e if e.preload is None else replace(e, preload=e.preload / 50) for e in layout.elements]
+    features = (replace(layout.key_features[1], tolerance=1e-5),)
+    pull = (layout.loads[0], replace(layout.loads[1], force=np.array([20.0, 60.0, 40.0])))
+    return replace(layout, elements=tuple(elements), key_features=features, loads=pull)
+
+
+def boxed() -> Layout:
+    """The bracket with locators on all sides: it does not come out."""
+    lid = Contact.on_facet("lid", "locator", [0.01, 0.02, 0.03], [0.0, 0.0, 1.0])
+    sides = [([0.03, 0.04, 0.005], [0.0, 1.0, 0.0]), ([0.06, 0.02, 0.005], [1.0, 0.0, 0.0])]
+    walls = [Contact.on_facet(f"wall{k}", "locator", point, normal) for k, (point, normal) in enumerate(sides)]
+    return replace(read_layout(BRACKET), contacts=(lid, *walls))
+
+
+FAILING = {"weak": (weak, {"holds_loads", "accurate"}), "boxed": (boxed, {"strongly_accessible", "loadable"})}
+
+
+@pytest.mark.parametrize("name", FAILING)
+def test_what_fails_is_shown_first(name: str) -> None:
+    make, wanted = FAILING[name]
+    layout = make()
+    verdict = verify(layout)
+    scene = scene_of(layout, verdict)
+    assert wanted <= {each.require for each in verdict.requirements if each.answer is Answer.NO}
+    assert scene.first is not None
+    assert scene.stories[scene.first].required
+    assert scene.stories[scene.first].answer is Answer.NO
+    assert_denials_are_seen(scene)
+
+
+@pytest.mark.parametrize("path", LAYOUTS, ids=lambda path: path.name)
+def test_for_every_no_there_is_something_to_see(path: Path) -> None:
+    assert_denials_are_seen(looked_at(path)[2])
+
+
+def assert_denials_are_seen(scene: Scene) -> None:
+    for story in scene.stories:
+        if story.answer is Answer.NO:
+            assert story.things, (story.group, story.claim)
+            if story.claim in ("form_closure", "force_closure", "holds_loads", "deterministic"):
+                assert story.animation is not None
+            if story.claim in ("form_closure", "force_closure"):
+                assert any(thing.path.endswith("/disturbance") for thing in story.things)
+
+
+def test_only_the_stories_that_are_wanted_are_told() -> None:
+    layout, verdict, scene = looked_at(BRACKET)
+    one = scene_of(layout, verdict, tell={("all", "form_closure")})
+    assert [story.path for story in one.stories if story.shown] == [story_of(scene, "all", "form_closure").path]
+    assert [story.answer for story in one.stories] == [story.answer for story in scene.stories]
+
+
+@pytest.mark.parametrize("path", LAYOUTS, ids=lambda path: path.name)
+def test_cameras_have_everything_in_view(path: Path) -> None:
+    _, _, scene = looked_at(path)
+    for story in (None, *scene.stories):
+        camera = scene.camera if story is None or story.camera is None else story.camera
+        view = Projection.of(scene, camera, 1000, 800)
+        things = [t.shape for t in scene.told(story)[0] if not t.path.startswith(("loads", "normals", "cones"))]
+        pixels, depths = view.pixels(scene.to_view(extent(things)))
+        assert depths.min() > view.clipping[0]
+        assert pixels.min() >= 0
+        assert (pixels <= [1000, 800]).all()
 
 
 @given(twists, st.floats(-1, 1), st.floats(-1, 1))

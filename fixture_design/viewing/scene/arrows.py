@@ -64,15 +64,14 @@ def bent_along(line: Points3, thick: float) -> Mesh:
     bend = np.cross(steps[0], steps[-1])
     length = float(np.linalg.norm(bend))
     up = bend / length if length > _STRAIGHT else tangents(steps[0])[0]
-    rings = []
-    for point, step, radius in zip(line, steps, radii, strict=True):
-        side = np.cross(up, step)
-        side /= np.linalg.norm(side)
-        other = np.cross(step, side)
-        rings.append(point + radius * (np.outer(np.cos(angles), side) + np.outer(np.sin(angles), other)))
+    sides = np.cross(up, steps)
+    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    others = np.cross(steps, sides)
+    across = np.cos(angles)[:, None] * sides[:, None] + np.sin(angles)[:, None] * others[:, None]
+    rings = line[:, None] + radii[:, None, None] * across
     here, there = np.arange(_AROUND), (np.arange(_AROUND) + 1) % _AROUND
     corners = []
     for k in range(len(line) - 1):
         a, b = k * _AROUND + here, k * _AROUND + there
         corners += [np.column_stack([a, b, b + _AROUND]), np.column_stack([a, b + _AROUND, a + _AROUND])]
-    return Mesh(np.vstack(rings), np.vstack(corners), smooth=True)
+    return Mesh(rings.reshape(-1, 3), np.vstack(corners), smooth=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -16,18 +16,25 @@ from fixture_design.viewing.scene.contact_marks import contact_things
 from fixture_design.viewing.scene.elements import element_things
 from fixture_design.viewing.scene.features import feature_things
 from fixture_design.viewing.scene.scene import Camera, Label, Layer, Scene, Story, Thing
-from fixture_design.viewing.scene.shapes import Mesh, Points3
+from fixture_design.viewing.scene.shapes import Points3
 from fixture_design.viewing.scene.solid import Solid, body_things, part_things, solid_of, where
 from fixture_design.viewing.scene.stories import first_story, stories_of
-from fixture_design.viewing.scene.tessellation import extent, joined, triangles_of
+from fixture_design.viewing.scene.tessellation import extent, hull_of, joined, triangles_of
 
 
-def scene_of(layout: Layout, verdict: Verdict, solid: Solid | None = None) -> Scene:
+def scene_of(
+    layout: Layout,
+    verdict: Verdict,
+    solid: Solid | None = None,
+    tell: Collection[tuple[str, str]] | None = None,
+) -> Scene:
     """Everything there is to see of a layout: the part, what touches it, what acts, and a story for each answer.
 
     Args:
         verdict: of ``layout``, as `verify` gave it; its contacts are drawn.
         solid: the part's, where it is made already (`solid_of`): that of the layout's part where it stands.
+        tell: (group, claim) of the stories that are wanted with all there is to see; by default of all. What follows a
+            slider has no time for those that nobody looks at.
 
     Raises:
         InputError: the part or a body cannot be read.
@@ -44,12 +51,14 @@ def scene_of(layout: Layout, verdict: Verdict, solid: Solid | None = None) -> Sc
             *feature_things(layout, verdict, size),
         )
     )
-    seen = extent([thing.shape for thing in things if not thing.path.startswith(("loads", "normals", "cones"))])
+    still = [thing.shape for thing in things if not thing.path.startswith(("loads", "normals", "cones"))]
+    seen = hull_of(extent(still))
     surface = joined([triangles_of(thing.shape) for thing in things if thing.path.startswith("part/") and thing.solid])
+    hull = hull_of(surface.vertices) if solid is None else solid.hull
     camera = camera_of(layout.space, verdict.contacts, seen, center)
     stories = tuple(
-        replace(story, camera=_camera(camera, story, seen, surface))
-        for story in stories_of(layout, verdict, surface, center, size)
+        replace(story, camera=_camera(camera, story, seen, hull))
+        for story in stories_of(layout, verdict, surface, hull, center, size, tell)
     )
     return Scene(
         name=layout.name,
@@ -66,13 +75,13 @@ def scene_of(layout: Layout, verdict: Verdict, solid: Solid | None = None) -> Sc
     )
 
 
-def _camera(camera: Camera, story: Story, seen: Points3, surface: Mesh) -> Camera:
+def _camera(camera: Camera, story: Story, seen: Points3, hull: Points3) -> Camera:
     """Has what the story shows in view too, and the part where it moves to unless that is far."""
     shown = [seen]
     if story.things:
         shown.append(extent([thing.shape for thing in story.things]))
     if story.animation is not None and not story.animation.far:
-        shown.append(story.animation.poses[-1].points(surface.vertices))
+        shown.append(story.animation.poses[-1].points(hull))
     return aimed(camera, np.vstack(shown))
 
 

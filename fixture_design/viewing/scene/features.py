@@ -30,8 +30,10 @@ def feature_things(layout: Layout, verdict: Verdict, size: float) -> Iterator[Th
         path = f"features/{number}"
         yield Thing(f"{path}/point", Sphere(point, 1.3 * THICK * size), FEATURE)
         yield Thing(f"{path}/direction", Cylinder(point - half, point + half, 0.5 * THICK * size), FEATURE)
-        words = _words(errors[feature.name]) if feature.name in errors else feature.name
-        yield Label(path, words, point + (TOLERANCE + ASIDE) * size * way, BLACK)
+        error = errors.get(feature.name)
+        words = feature.name if error is None else _words(error)
+        beyond = (TOLERANCE * (1.0 if error is None else max(1.0, _used(error))) + 1.5 * ASIDE) * size
+        yield Label(path, words, point + beyond * way, BLACK)
 
 
 def _words(error: FeatureError) -> str:
@@ -39,6 +41,11 @@ def _words(error: FeatureError) -> str:
     if isinf(error.worst):
         return f"{error.feature}: not located"
     return f"{error.feature}: {format_length(error.worst)} of {format_length(error.tolerance)}"
+
+
+def _used(error: FeatureError) -> float:
+    """How many tolerances long an error is drawn."""
+    return _MOST if isinf(error.worst) else min(error.worst / error.tolerance, _MOST)
 
 
 def _errors(verdict: Verdict) -> Iterator[FeatureError]:
@@ -52,7 +59,7 @@ def error_things(path: str, evidence: LocatingErrors, size: float) -> Iterator[T
     """For each feature two arrows as long as its error, and discs where its tolerance ends: one length for all."""
     for number, feature in enumerate(evidence.features):
         point, way = lifted(feature.point), lifted(feature.direction)
-        used = _MOST if isinf(feature.worst) else min(feature.worst / feature.tolerance, _MOST)
+        used = _used(feature)
         color = GREEN if feature.worst <= feature.tolerance else VERMILLION
         for sign in (-1.0, 1.0):
             step = sign * TOLERANCE * size * way

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from fixture_design.arrays import Vector
+from fixture_design.contacts import OPENED, unit_normal
 from fixture_design.errors import format_length
-from fixture_design.layout import Answer, Layout, LoadVerdict, LocatingErrors, Pose, StraightWays, Unbalanced
+from fixture_design.layout import Answer, LoadVerdict, LocatingErrors, Pose, StraightWays, Unbalanced, element_name
 from fixture_design.viewing.palette import LOAD, MOTION, VERMILLION
 from fixture_design.viewing.scene.acting import acting_point, tail
 from fixture_design.viewing.scene.arrows import wrench_things
@@ -33,9 +36,9 @@ def told_motion(stage: Stage, motion: Vector, *, breaks: bool, both_ways: bool =
         both_ways: nothing notices its opposite either.
     """
     twist = Twist.of_motion(motion)
-    amount = shown_amount(twist, stage.surface.vertices, stage.size)
+    amount = shown_amount(twist, stage.hull, stage.size)
     things = list(motion_things(stage.path, twist, stage.center, stage.size))
-    moved = amount * float(np.linalg.norm(twist.along + np.cross(twist.about, stage.surface.vertices), axis=1).max())
+    moved = amount * float(np.linalg.norm(twist.along + np.cross(twist.about, stage.hull), axis=1).max())
     caption = f"Orange: how the part moves, drawn so large ({format_length(moved)}) that it is seen."
     if breaks:
         things += smallest_push(stage.path, twist, stage.surface, stage.size)
@@ -61,7 +64,7 @@ def told_unbalanced(stage: Stage, proof: Unbalanced, load: LoadVerdict | None) -
 
 def told_way(stage: Stage, ways: StraightWays) -> Told:
     """The straight way out and the part on it, at its true length; or what is in the way."""
-    aside = tuple(path for name in ways.open if (path := open_path(stage.layout, name)) is not None)
+    aside = tuple(_opened(stage, ways))
     without = (*PLAIN, "normals", "cones", *aside)
     if ways.direction is None:
         pushes = _normals_that_balance(stage, ways)
@@ -78,9 +81,8 @@ def told_way(stage: Stage, ways: StraightWays) -> Told:
     ]
     labels: list[Label] = []
     length = FOLLOWED * stage.size if ways.length is None else min(ways.length, FOLLOWED * stage.size)
-    caption = (
-        f"Orange: straight out, drawn for {format_length(length)} at its true length; what is open then is left out."
-    )
+    true = f"drawn for {format_length(length)} at its true length"
+    caption = f"Orange: straight out, {true}; clamps and supports are open then and left out."
     if ways.obstacle is not None:
         length = ways.obstacle.after
         at = lifted(ways.obstacle.point)
@@ -95,14 +97,16 @@ def _straight(way: np.ndarray) -> Animation:
     return Animation("part", tuple(Pose(still, way * k / _STEPS) for k in range(_STEPS + 1)), _SECONDS, far=True)
 
 
-def open_path(layout: Layout, name: str) -> str | None:
-    """What is drawn of an element or body that is open."""
-    return element_path(layout, name.split("#", 1)[0])
+def _opened(stage: Stage, ways: StraightWays) -> Iterator[str]:
+    """Paths of clamps and supports that are open; pins with clearance are open too, but stay where they are."""
+    names = {element_name(name) for name in ways.open}
+    for owner in (*stage.layout.elements, *stage.layout.bodies):
+        path = element_path(stage.layout, owner.name)
+        if owner.name in names and owner.role in OPENED and path is not None:
+            yield path
 
 
 def _normals_that_balance(stage: Stage, ways: StraightWays) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    from fixture_design.contacts import unit_normal  # noqa: PLC0415 - nothing else here needs normals
-
     weights = ways.weights or (ways.branches[0] if ways.branches else {})
     return [
         (contact.name, lifted(contact.point), -weight * lifted(unit_normal(normal)))
@@ -121,7 +125,7 @@ def told_errors(stage: Stage, evidence: LocatingErrors, answer: Answer | None) -
     worst = [feature.displacement for feature in evidence.features if feature.displacement is not None]
     if answer is Answer.NO and worst and np.any(worst[0]):
         twist = Twist.of_motion(worst[0])
-        amount = shown_amount(twist, stage.surface.vertices, stage.size)
+        amount = shown_amount(twist, stage.hull, stage.size)
         caption += f" The part moves as it may be off, {amount:.3g} times enlarged."
         return Told(caption, things, (), motion_animation(twist, amount), ("loads", "normals", "cones"))
     return Told(caption, things, without=("loads", "normals", "cones"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,9 @@ from fixture_design.layout import Body, Layout, Part, Pose, Verdict
 from fixture_design.viewing.palette import EDGES, PART, ROLE_COLORS, ROLE_INKS
 from fixture_design.viewing.scene.drawn_sizes import ASIDE, FACET, SHEET
 from fixture_design.viewing.scene.scene import Label, Thing
-from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Segments3, Vector3
+from fixture_design.viewing.scene.shapes import Box, Lines, Mesh, Points3, Segments3, Vector3
 from fixture_design.viewing.scene.space import lifted, lifted_rows
+from fixture_design.viewing.scene.tessellation import hull_of
 
 #: How much of what is behind a solid shows: contacts are inside and behind.
 _PART_OPACITY, _BODY_OPACITY = 0.36, 0.3
@@ -33,9 +35,10 @@ class Solid:
     center: Vector3
     size: float
 
-    def farthest(self, direction: Vector3) -> Vector3:
-        """A vertex that is farthest along a direction."""
-        return self.mesh.vertices[int(np.argmax(self.mesh.vertices @ direction))]
+    @cached_property
+    def hull(self) -> Points3:
+        """The corners of its convex hull, shape (n, 3) [m]."""
+        return hull_of(self.mesh.vertices)
 
 
 def solid_of(layout: Layout, geometry: PartGeometry | Polygon | None = None) -> Solid | None:
@@ -139,5 +142,6 @@ def body_things(layout: Layout, size: float) -> Iterator[Thing | Label]:
         yield Label(f"bodies/{number}", body.name, corner, ROLE_INKS[body.role])
 
 
+@lru_cache(maxsize=64)  # of the same body: whoever moves an element has not moved the vise
 def _body(body: Body) -> Solid:
     return _placed(load_part(Part(body.name, "urdf", body.file, None, 1.0, body.pose)), body.pose)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from fixture_design.contacts import Contact
 from fixture_design.layout import (
@@ -25,7 +25,7 @@ from fixture_design.viewing.scene.balance_telling import told_balance, told_weig
 from fixture_design.viewing.scene.elements import element_path
 from fixture_design.viewing.scene.motion_telling import told_errors, told_motion, told_unbalanced, told_way
 from fixture_design.viewing.scene.scene import Story
-from fixture_design.viewing.scene.shapes import Mesh, Vector3
+from fixture_design.viewing.scene.shapes import Mesh, Points3, Vector3
 from fixture_design.viewing.scene.telling import Stage, Told
 from fixture_design.viewing.words import evidence_in_words
 
@@ -33,8 +33,19 @@ from fixture_design.viewing.words import evidence_in_words
 _HOLDING = ("form_closure", "force_closure")
 
 
-def stories_of(layout: Layout, verdict: Verdict, surface: Mesh, center: Vector3, size: float) -> tuple[Story, ...]:
-    """The answers of all groups in the order of the verdict; of groups with the same contacts the shared ones once."""
+def stories_of(
+    layout: Layout,
+    verdict: Verdict,
+    surface: Mesh,
+    hull: Points3,
+    center: Vector3,
+    size: float,
+    tell: Collection[tuple[str, str]] | None = None,
+) -> tuple[Story, ...]:
+    """The answers of all groups in the order of the verdict; of groups with the same contacts the shared ones once.
+
+    Arguments as of `scene_of` and `Stage`.
+    """
     required = {(requirement.group, requirement.require) for requirement in verdict.requirements}
     told = dict[tuple[str, ...], str]()
     stories: list[Story] = []
@@ -46,8 +57,9 @@ def stories_of(layout: Layout, verdict: Verdict, surface: Mesh, center: Vector3,
         for claim, finding in group.findings.items():
             if not first and claim not in USE_CLAIMS and (group.name, claim) not in required:
                 continue
-            stage = Stage(f"stories/{len(stories)}", layout, verdict, contacts, surface, center, size)
-            shown = _told(stage, claim, finding) if contacts else Told()
+            wanted = tell is None or (group.name, claim) in tell
+            stage = Stage(f"stories/{len(stories)}", layout, verdict, contacts, surface, hull, center, size)
+            shown = _told(stage, claim, finding) if contacts and wanted else Told()
             words = evidence_in_words(claim, finding, verdict.reference, verdict.length)
             stories.append(
                 Story(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fixture_design.contacts import Contact
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.scene.scene import Animation, Label, Thing
-from fixture_design.viewing.scene.shapes import Mesh, Vector3
+from fixture_design.viewing.scene.shapes import Mesh, Points3, Vector3
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +29,7 @@ class Stage:
     Attributes:
         path: of the story's things.  contacts: of the group.
         surface: of the part in W, or the pieces at the contacts where there is none.
+        hull: its corners that stand out, which of all points move most.
         center, size: middle and half diagonal of the part [m].
     """
 
@@ -37,6 +38,7 @@ class Stage:
     verdict: Verdict
     contacts: Sequence[Contact]
     surface: Mesh
+    hull: Points3
     center: Vector3
     size: float
 

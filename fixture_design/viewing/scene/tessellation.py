@@ -150,6 +150,18 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
     return Mesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(triangles), meshes[0].smooth)
 
 
+def hull_of(points: Points3) -> Points3:
+    """The corners of the convex hull of points, or all of them where they lie in a plane: what stands out most does so
+    in one of them, whichever way it is looked at.
+    """
+    from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415 - a third of a second
+
+    try:
+        return points[ConvexHull(points).vertices]
+    except QhullError:
+        return points
+
+
 def extent(shapes: Iterable[Shape]) -> Points3:
     """Points that a picture of some shapes, at least one, must hold, shape (n, 3)."""
     return np.vstack(
