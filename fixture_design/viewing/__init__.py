@@ -1,8 +1,8 @@
 """What people look at: the scene in three dimensions, evidence in words, the sheet to sign, the contact state graph.
 
 Nothing here decides anything; it shows what a verdict holds. A layout and its verdict make a *scene*, one plain
-description; `preview_page` is an HTML file of it, `picture` a PNG, `drake_meshcat` a live session. All of it is loaded
-when it is first asked for.
+description; `preview_page` is an HTML file of it, `picture` a PNG (`urdf/bracket/held.png` and `free.png` are two),
+`drake_meshcat` a live session. All of it is loaded when it is first asked for.
 """
 
 from __future__ import annotations

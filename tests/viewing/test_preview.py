@@ -7,6 +7,7 @@ import re
 from base64 import b64decode
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
@@ -97,7 +98,8 @@ def test_twenty_thousand_triangles_are_less_than_three_megabytes(tmp_path: Path)
     assert 1_000_000 < len(page.encode()) < MOST
 
 
-def test_a_real_part_of_many_triangles(tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_a_real_part_of_many_triangles() -> None:
     shared("airo-models/airo_models/grippers/fingertips/originals/robotiq_adapter.stl")
     layout = fd.read_layout(Path(__file__).parents[1] / "layouts" / "robotiq_adapter.layout.yaml")
     assert len(preview_page(layout, fd.verify(layout)).encode()) < MOST
@@ -130,6 +132,7 @@ def test_inputs_are_not_overwritten(tmp_path: Path, name: str) -> None:
     assert (tmp_path / name).read_bytes() == before
 
 
+@cache
 def graph() -> fd.ContactStateGraph:
     return fd.state_graph(fd.read_assembly(URDF / "figure14" / "peg_in_hole.assembly.yaml"), samples=1)
 

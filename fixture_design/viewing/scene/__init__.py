@@ -1,5 +1,7 @@
 """The scene: one plain description of what there is to see, for whatever draws it.
 
+`urdf/bracket/held.png` shows a story of what holds, `urdf/bracket/free.png` one of what gets away.
+
 `scene_of` makes it of a layout and its verdict; `viewing.meshcat_commands`, `viewing.drake_meshcat` and
 `viewing.drake_picture` draw it. Nothing here imports a renderer.
 """

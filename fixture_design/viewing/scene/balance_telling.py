@@ -11,10 +11,10 @@ from fixture_design.viewing.scene.arrows import central_point, wrench_things
 from fixture_design.viewing.scene.pushes import force_pushes, longest_of, push_things, scale_for, weight_pushes
 from fixture_design.viewing.scene.scene import Label, Thing
 from fixture_design.viewing.scene.space import Twist
-from fixture_design.viewing.scene.telling import PLAIN, Stage, Told
+from fixture_design.viewing.scene.telling import PLAIN, Backdrop, Told
 
 
-def told_weights(stage: Stage, branches: tuple[Weights, ...], finding: Finding) -> Told:
+def told_weights(stage: Backdrop, branches: tuple[Weights, ...], finding: Finding) -> Told:
     """Arrows as long as the weights that balance."""
     pushes = weight_pushes(branches[0], stage.contacts, finding)
     scale = scale_for(longest_of(pushes), stage.size)
@@ -24,7 +24,7 @@ def told_weights(stage: Stage, branches: tuple[Weights, ...], finding: Finding) 
     return Told(caption, things, without=(*PLAIN, "normals", "cones"))
 
 
-def told_balance(stage: Stage, balance: Balance, load: LoadVerdict | None, weight: np.ndarray) -> Told:
+def told_balance(stage: Backdrop, balance: Balance, load: LoadVerdict | None, weight: np.ndarray) -> Told:
     """Forces of the contacts, the load and the weight, all in one scale.
 
     Args:
@@ -47,7 +47,7 @@ def told_balance(stage: Stage, balance: Balance, load: LoadVerdict | None, weigh
     return Told(caption, tuple(things), tuple(labels), without=(*PLAIN, "normals"))
 
 
-def _acting(stage: Stage, load: LoadVerdict | None, weight: np.ndarray) -> list[tuple[str, Twist, np.ndarray]]:
+def _acting(stage: Backdrop, load: LoadVerdict | None, weight: np.ndarray) -> list[tuple[str, Twist, np.ndarray]]:
     """Name, wrench and place of what acts besides contacts."""
     heavy = Twist.of_motion(weight)
     found = [("weight", heavy, central_point(heavy, stage.center))] if np.any(weight) else []

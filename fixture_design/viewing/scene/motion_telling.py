@@ -22,13 +22,13 @@ from fixture_design.viewing.scene.pushes import push_things, scale_for
 from fixture_design.viewing.scene.scene import Animation, Label, Thing
 from fixture_design.viewing.scene.shapes import Arrow, Sphere
 from fixture_design.viewing.scene.space import Twist, lifted
-from fixture_design.viewing.scene.telling import PLAIN, Stage, Told
+from fixture_design.viewing.scene.telling import PLAIN, Backdrop, Told
 
 #: Steps of an animation along a straight way, and how long it takes [s].
 _STEPS, _SECONDS = 8, 1.8
 
 
-def told_motion(stage: Stage, motion: Vector, *, breaks: bool, both_ways: bool = False) -> Told:
+def told_motion(stage: Backdrop, motion: Vector, *, breaks: bool, both_ways: bool = False) -> Told:
     """A displacement as an arrow or a screw, and the part moving so.
 
     Args:
@@ -46,7 +46,7 @@ def told_motion(stage: Stage, motion: Vector, *, breaks: bool, both_ways: bool =
     return Told(caption, tuple(things), (), motion_animation(twist, amount, both_ways=both_ways), PLAIN)
 
 
-def told_unbalanced(stage: Stage, proof: Unbalanced, load: LoadVerdict | None) -> Told:
+def told_unbalanced(stage: Backdrop, proof: Unbalanced, load: LoadVerdict | None) -> Told:
     """What a load moves: the motion, and the load itself."""
     told = told_motion(stage, proof.motion, breaks=False)
     wrench = Twist.of_motion(proof.wrench if load is None or not np.any(load.wrench) else load.wrench)
@@ -62,7 +62,7 @@ def told_unbalanced(stage: Stage, proof: Unbalanced, load: LoadVerdict | None) -
     return Told(caption, (*told.things, *things), (label,), told.animation, PLAIN)
 
 
-def told_way(stage: Stage, ways: StraightWays) -> Told:
+def told_way(stage: Backdrop, ways: StraightWays) -> Told:
     """The straight way out and the part on it, at its true length; or what is in the way."""
     aside = tuple(_opened(stage, ways))
     without = (*PLAIN, "normals", "cones", *aside)
@@ -97,7 +97,7 @@ def _straight(way: np.ndarray) -> Animation:
     return Animation("part", tuple(Pose(still, way * k / _STEPS) for k in range(_STEPS + 1)), _SECONDS, far=True)
 
 
-def _opened(stage: Stage, ways: StraightWays) -> Iterator[str]:
+def _opened(stage: Backdrop, ways: StraightWays) -> Iterator[str]:
     """Paths of clamps and supports that are open; pins with clearance are open too, but stay where they are."""
     names = {element_name(name) for name in ways.open}
     for owner in (*stage.layout.elements, *stage.layout.bodies):
@@ -106,7 +106,7 @@ def _opened(stage: Stage, ways: StraightWays) -> Iterator[str]:
             yield path
 
 
-def _normals_that_balance(stage: Stage, ways: StraightWays) -> list[tuple[str, np.ndarray, np.ndarray]]:
+def _normals_that_balance(stage: Backdrop, ways: StraightWays) -> list[tuple[str, np.ndarray, np.ndarray]]:
     weights = ways.weights or (ways.branches[0] if ways.branches else {})
     return [
         (contact.name, lifted(contact.point), -weight * lifted(unit_normal(normal)))
@@ -116,7 +116,7 @@ def _normals_that_balance(stage: Stage, ways: StraightWays) -> list[tuple[str, n
     ]
 
 
-def told_errors(stage: Stage, evidence: LocatingErrors, answer: Answer | None) -> Told:
+def told_errors(stage: Backdrop, evidence: LocatingErrors, answer: Answer | None) -> Told:
     """Errors beside their tolerances; where one is too large, the part as far off as it may be."""
     if evidence.motion is not None:
         return told_motion(stage, evidence.motion, breaks=False, both_ways=True)

@@ -26,7 +26,7 @@ from fixture_design.viewing.scene.elements import element_path
 from fixture_design.viewing.scene.motion_telling import told_errors, told_motion, told_unbalanced, told_way
 from fixture_design.viewing.scene.scene import Story
 from fixture_design.viewing.scene.shapes import Mesh, Points3, Vector3
-from fixture_design.viewing.scene.telling import Stage, Told
+from fixture_design.viewing.scene.telling import Backdrop, Told
 from fixture_design.viewing.words import evidence_in_words
 
 #: Claims that are denied by a motion which nothing resists: the smallest push along it is enough.
@@ -44,7 +44,7 @@ def stories_of(
 ) -> tuple[Story, ...]:
     """The answers of all groups in the order of the verdict; of groups with the same contacts the shared ones once.
 
-    Arguments as of `scene_of` and `Stage`.
+    Arguments as of `scene_of` and `Backdrop`.
     """
     required = {(requirement.group, requirement.require) for requirement in verdict.requirements}
     told = dict[tuple[str, ...], str]()
@@ -58,7 +58,7 @@ def stories_of(
             if not first and claim not in USE_CLAIMS and (group.name, claim) not in required:
                 continue
             wanted = tell is None or (group.name, claim) in tell
-            stage = Stage(f"stories/{len(stories)}", layout, verdict, contacts, surface, hull, center, size)
+            stage = Backdrop(f"stories/{len(stories)}", layout, verdict, contacts, surface, hull, center, size)
             shown = _told(stage, claim, finding) if contacts and wanted else Told()
             words = evidence_in_words(claim, finding, verdict.reference, verdict.length)
             stories.append(
@@ -83,7 +83,7 @@ def _outside(layout: Layout, verdict: Verdict, contacts: list[Contact]) -> Itera
             yield from (f"{layer}/{number}" for layer in ("contacts", "normals", "cones"))
 
 
-def _told(stage: Stage, claim: str, finding: Finding) -> Told:
+def _told(stage: Backdrop, claim: str, finding: Finding) -> Told:
     """By the kind of the evidence."""
     if finding.use is not None:
         return _told_use(stage, finding)
@@ -99,7 +99,7 @@ def _told(stage: Stage, claim: str, finding: Finding) -> Told:
     return Told()
 
 
-def _told_use(stage: Stage, finding: Finding) -> Told:
+def _told_use(stage: Backdrop, finding: Finding) -> Told:
     use = finding.use
     match use:
         case LocatingErrors():

@@ -23,8 +23,8 @@ class Told:
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
-    """What every story of a group needs.
+class Backdrop:
+    """What every story of a group has behind it.
 
     Attributes:
         path: of the story's things.  contacts: of the group.
