@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ROOT = "scene"
 
 #: Height of letters in half diagonals of the part, and width of thin lines [pixels].
-_LETTERS, _THIN = 0.07, 1.5
+_LETTERS, _THIN = 0.055, 1.5
 
 
 def started(port: int | None = None) -> Meshcat:
@@ -56,7 +56,9 @@ def draw(
     things, labels = scene.told(story)
     if before is None:
         board.Delete(ROOT)
-        eye, target = scene.to_view(np.array([scene.camera.eye, scene.camera.target]))
+        camera = scene.camera if story is None or story.camera is None else story.camera
+        eye, target = scene.to_view(np.array([camera.eye, camera.target]))
+        board.SetCamera(board.PerspectiveCamera(fov=float(np.degrees(camera.fov)), near=0.02, far=200.0))
         board.SetCameraPose(eye, target)
         drawn = things
     else:
