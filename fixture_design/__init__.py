@@ -36,6 +36,8 @@ The folders state the theory, and each imports only from those to its right::
 * `recognition`: contact states from measured forces and displacements: measurement sets, discriminants, classifier.
 * `io`: files. `viewing`: evidence in words, the sheet to sign. `batch`: thousands of layouts in worker processes.
   `cli`: the command line.
+* `io`: files. `viewing`: evidence in words, the sheet to sign, the scene to look at (`viewing.scene`) as a page, a
+  picture or a live session. `batch`: thousands of layouts in worker processes. `cli`: the command line.
 
 How an answer is decided
 ========================
@@ -82,6 +84,7 @@ if TYPE_CHECKING:
     from fixture_design.layout import Layout, Verdict
     from fixture_design.recognition import Classifier, Recogniser, build_classifier
     from fixture_design.verification import check, contacts_of, verify
+    from fixture_design.viewing import preview
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
@@ -99,6 +102,7 @@ _HOME = {
     "check": "verification",
     "contacts_of": "verification",
     "design": "design",
+    "preview": "viewing",
     "read_assembly": "io",
     "read_classifier": "io",
     "read_graph": "io",
@@ -132,6 +136,7 @@ __all__ = [
     "check",
     "contacts_of",
     "design",
+    "preview",
     "read_assembly",
     "read_classifier",
     "read_graph",

@@ -15,6 +15,7 @@ from fixture_design.cli.classifier import classifier
 from fixture_design.cli.design import design
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
+from fixture_design.cli.preview import preview
 from fixture_design.cli.recognize import recognize
 from fixture_design.cli.schema import schema
 from fixture_design.cli.states import states
@@ -35,6 +36,7 @@ app.command()(design)
 
 app.command()(batch)
 
+app.command()(preview)
 app.command()(states)
 app.command()(classifier)
 app.command()(recognize)

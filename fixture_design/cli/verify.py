@@ -22,6 +22,10 @@ def verify(
     report: Annotated[
         Path | None, typer.Option("--report", help="Also write a sheet to sign, as HTML.", metavar="OUT.html")
     ] = None,
+    html: Annotated[
+        Path | None,
+        typer.Option("--html", help="Also write the scene to turn and play, of one layout.", metavar="OUT.html"),
+    ] = None,
 ) -> None:
     """Say whether layouts locate the part, let it out and hold it, with evidence.
 
@@ -29,6 +33,10 @@ def verify(
     """
     from fixture_design.verification import verify as verify_layout  # noqa: PLC0415 - after the arguments are known good
 
+    if html is not None and len(layouts) != 1:
+        raise InputError(
+            "a preview shows one layout", found=f"{len(layouts)} layouts", expected="--html with one of them"
+        )
     codes: list[ExitCode] = []
     records: list[dict[str, Any]] = []
     verified: list[tuple[Layout, Verdict]] = []
@@ -60,7 +68,25 @@ def verify(
         typer.echo(dumps(records[0] if len(layouts) == 1 else records))
     if report is not None:
         codes.append(_write_report(report, inputs, verified))
+    if html is not None:
+        codes.append(_write_preview(html, verified))
     raise typer.Exit(worst(codes))
+
+
+def _write_preview(html: Path, verified: list[tuple[Layout, Verdict]]) -> ExitCode:
+    """The scene of the layout, if it could be verified."""
+    from fixture_design.viewing import preview  # noqa: PLC0415 - reads geometry again
+
+    try:
+        for layout, verdict in verified:
+            preview(layout, verdict).save(html)
+    except InputError as error:
+        say(met_in(html, error))
+        return ExitCode.BAD_INPUT
+    except Exception as error:  # noqa: BLE001 - the verdict has been said
+        say_internal_error(error, html)
+        return ExitCode.INTERNAL_ERROR
+    return ExitCode.HOLDS
 
 
 def _write_report(report: Path, inputs: list[Path], verified: list[tuple[Layout, Verdict]]) -> ExitCode:

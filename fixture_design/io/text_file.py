@@ -1,4 +1,4 @@
-"""Writing a text file at once, so that a crash, a full disk or a reader in between never meets half a file."""
+"""Writing a file at once, so that a crash, a full disk or a reader in between never meets half a file."""
 
 from __future__ import annotations
 
@@ -12,20 +12,34 @@ from fixture_design.errors import FileFormatError
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replaces the file by ``text`` (UTF-8); what was there stays if that fails. A link's target is replaced.
+    """Replaces the file by ``text`` (UTF-8, line ends as they are), see `write_pieces`.
 
     Raises:
-        FileFormatError: as `write_pieces`.
+        FileFormatError: as there.
     """
     write_pieces(path, [text])
 
 
+def write_bytes(path: Path, content: bytes) -> None:
+    """Replaces the file by ``content``, see `write_pieces`.
+
+    Raises:
+        FileFormatError: as there.
+    """
+    _write(path, [content])
+
+
 def write_pieces(path: Path, pieces: Iterable[str]) -> None:
-    """Likewise by pieces of text one after the other, which are not held together.
+    """Replaces the file by pieces of text one after the other, which are not held together; what was there stays if
+    that fails. A link's target is replaced.
 
     Raises:
         FileFormatError: the folder is not there, not permitted, the disk is full, or ``path`` is a folder.
     """
+    _write(path, (piece.encode("utf-8") for piece in pieces))
+
+
+def _write(path: Path, pieces: Iterable[bytes]) -> None:
     target = Path(os.path.realpath(path))
     try:
         if target.is_dir():
@@ -35,10 +49,10 @@ def write_pieces(path: Path, pieces: Iterable[str]) -> None:
         raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
 
 
-def _replace(target: Path, pieces: Iterable[str]) -> None:
+def _replace(target: Path, pieces: Iterable[bytes]) -> None:
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
     try:
-        with open(handle, "w", encoding="utf-8", newline="\n") as file:
+        with open(handle, "wb") as file:
             file.writelines(pieces)
             file.flush()
             os.fsync(file.fileno())

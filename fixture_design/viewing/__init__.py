@@ -1,19 +1,53 @@
-"""What people look at: evidence in words, the sheet to sign, the contact state graph.
+"""What people look at: the scene in three dimensions, evidence in words, the sheet to sign, the contact state graph.
 
-Nothing here decides anything; it shows what a verdict holds.
+Nothing here decides anything; it shows what a verdict holds. A layout and its verdict make a *scene*, one plain
+description; `preview_page` is an HTML file of it, `picture` a PNG (`urdf/bracket/held.png` and `free.png` are two),
+`drake_meshcat` a live session. All of it is loaded when it is first asked for.
 """
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from fixture_design.viewing.card import CARD_STYLE, card
 from fixture_design.viewing.graph_picture import graph_picture, write_graph_picture
 from fixture_design.viewing.report import refuse_inputs, write_report
 from fixture_design.viewing.words import evidence_in_words
 
+if TYPE_CHECKING:
+    from fixture_design.viewing.previews import Preview, preview
+    from fixture_design.viewing.scene import Scene, scene_of
+    from fixture_design.viewing.scene_page import preview_page
+    from fixture_design.viewing.scene_picture import picture
+
+_HOME = {
+    "Preview": "previews",
+    "Scene": "scene",
+    "picture": "scene_picture",
+    "preview": "previews",
+    "preview_page": "scene_page",
+    "scene_of": "scene",
+}
+
 __all__ = [
     "CARD_STYLE",
+    "Preview",
+    "Scene",
     "card",
     "evidence_in_words",
     "graph_picture",
+    "picture",
+    "preview",
+    "preview_page",
     "refuse_inputs",
+    "scene_of",
     "write_graph_picture",
     "write_report",
 ]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from io import BytesIO
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
 from fixture_design.assembly import AssemblyBody, ContactState, ContactStateGraph
-from fixture_design.errors import FileFormatError, UnsupportedError
-from fixture_design.io.text_file import write_text
+from fixture_design.errors import UnsupportedError
+from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Pose
 from fixture_design.viewing.markup import Markup, tag
 
@@ -37,7 +38,7 @@ def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
     if path.suffix.lower() == ".svg":
         write_text(path, graph_picture(graph) + "\n")
     elif path.suffix.lower() == ".png":
-        _write_png(graph, path)
+        write_bytes(path, graph_png(graph))
     else:
         raise UnsupportedError("graphs are drawn as SVG or PNG", source=path, expected="a name with .svg or .png")
 
@@ -99,8 +100,12 @@ def _drawing(graph: ContactStateGraph, state: ContactState, place: tuple[float, 
     return tag("g", title, frame, inner, name)
 
 
-def _write_png(graph: ContactStateGraph, path: Path) -> None:
-    """The same drawing by matplotlib, which Drake brings along."""
+def graph_png(graph: ContactStateGraph) -> bytes:
+    """The same drawing as PNG by matplotlib, which Drake brings along.
+
+    Raises:
+        UnsupportedError: a graph in space.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - half a second of any start
     from matplotlib.figure import Figure  # noqa: PLC0415 - as above
     from matplotlib.patches import Polygon, Rectangle  # noqa: PLC0415 - as above
@@ -123,10 +128,9 @@ def _write_png(graph: ContactStateGraph, path: Path) -> None:
             axes.add_patch(shape)
             shape.set_clip_path(frame)
         axes.text(place[0] + _WIDTH / 2, place[1] + _HEIGHT + _TEXT, state.id, ha="center", fontsize=_TEXT * 0.7)
-    try:
-        FigureCanvasAgg(figure).print_png(str(path))
-    except OSError as cause:
-        raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
+    file = BytesIO()
+    FigureCanvasAgg(figure).print_png(file)
+    return file.getvalue()
 
 
 def _frame(state: ContactState) -> str:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Ends, Point, Points
-from fixture_design.contacts import Contact, Role, unit_normal
+from fixture_design.contacts import Contact, unit_normal
 from fixture_design.viewing.markup import Markup, joined, tag
+from fixture_design.viewing.palette import ROLE_COLORS
 
 #: Which coordinates of W each view shows, to the right and up.
 _VIEWS = (("from above", (0, 1)), ("from the front", (0, 2)), ("from the right", (1, 2)))
@@ -18,8 +19,6 @@ _PLANAR_VIEWS = (("in the plane", (0, 1)),)
 _WIDTH, _ROOM = 320.0, 60.0
 #: Length of a normal's arrow, radius of a contact's dot, height of its name.
 _ARROW, _DOT, _TEXT = 26.0, 3.0, 10.0
-
-ROLE_COLORS: dict[Role, str] = {"locator": "#1b6ca8", "support": "#6a4c93", "clamp": "#c1440e", "finger": "#2d6a4f"}
 
 
 def three_views(segments: Ends, contacts: Sequence[Contact]) -> Markup:
