@@ -23,7 +23,7 @@ def test_without_noise_the_answer_is_right_and_near_the_limit(
     classifier: Classifier = request.getfixturevalue("with_friction" if friction else "frictionless")
     rng = np.random.default_rng(1)
     samples = measured(apart, rng, 10, friction)
-    truth = TrueSets.of(apart, rng, 300, friction)
+    truth = TrueSets.of(apart, rng, 1_000, friction)
     assert len(samples) > 180
     assert in_answer(classifier, samples) >= 0.99
     possible = [truth.states(some.wrench) for some in samples]
