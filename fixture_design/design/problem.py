@@ -8,11 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Mask, Points, Rows, Vector
+from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector
 from fixture_design.design.candidates import Candidates, Several
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import Features, apart
+from fixture_design.design.standing import Standing
 from fixture_design.design.task import Limits, Objective
+from fixture_design.tolerances import DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +29,8 @@ class Problem:
         leaves: whether the part must come out of the locators in a straight line.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
+        standing: which of them would run into each other; None where nobody knows.
+        barred: directions out, each with the candidates that the part would run into along it, shape (n,).
         cancelled: asked now and then.
     """
 
@@ -40,6 +44,8 @@ class Problem:
     leaves: bool = True
     closes: str | None = "without friction"
     features: Features | None = None
+    standing: Standing | None = None
+    barred: tuple[tuple[Point, Mask], ...] = ()
     cancelled: Callable[[], bool] = lambda: False
 
     @cached_property
@@ -93,6 +99,24 @@ class Problem:
         """The candidates of rows, each once."""
         return np.unique(rows // self.each)
 
+    @property
+    def crowded(self) -> bool:
+        """Whether it matters which candidates are chosen together."""
+        return self.limits.spacing > 0 or self.standing is not None
+
     def joins(self, pool: Indices, chosen: Indices | tuple[int, ...] | list[int]) -> Mask:
-        """Which of a pool of candidates are far enough from all chosen ones."""
-        return apart(self.candidates.places, np.asarray(chosen, dtype=np.int64), pool, self.limits.spacing)
+        """Which of a pool of candidates are far enough from all chosen ones, and not in their way."""
+        chosen = np.asarray(chosen, dtype=np.int64)
+        free = apart(self.candidates.places, chosen, pool, self.limits.spacing)
+        return free if self.standing is None else free & self.standing.free(chosen, pool)
+
+    def together(self, chosen: Indices) -> bool:
+        """Whether candidates may all be chosen together."""
+        return all(self.joins(chosen[place + 1 :], chosen[[place]]).all() for place in range(len(chosen)))
+
+    def passing(self, pool: Indices, out: Point | None) -> Indices:
+        """Those of a pool that are not known to be in the part's way out."""
+        for direction, hit in self.barred if out is not None else ():
+            if float(direction @ out) > 1 - DEFAULT.near:
+                pool = pool[~hit[pool]]
+        return pool

@@ -95,16 +95,17 @@ def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indi
     """Locators of a region after exchanges, the kept ones among them; None where there are not enough."""
     kept = problem.rows_of(problem.locators)
     kept = independent(problem.rows, kept, (), rng, problem.candidates.freedoms) if len(kept) else kept
-    pool = region.pool * problem.each
+    usable = problem.passing(region.pool, region.out)
+    pool = usable * problem.each
 
     def joins(chosen: object) -> np.ndarray:
         owners = np.concatenate([problem.kept, np.asarray(chosen, dtype=np.int64) // problem.each])
-        return problem.joins(region.pool, owners)
+        return problem.joins(usable, owners)
 
     def allowed(chosen: Indices) -> np.ndarray:
         return np.array([joins(np.delete(chosen, place)) for place in range(len(chosen))])
 
-    spaced = problem.limits.spacing > 0
+    spaced = problem.crowded
     rows = independent(problem.rows, pool, kept, rng, problem.candidates.freedoms, joins if spaced else None)
     if len(rows) < problem.candidates.freedoms:
         return None
@@ -122,7 +123,8 @@ def clamps_for(problem: Problem, locators: Indices) -> Indices | None:
     costs = np.where(np.isin(pool, problem.spare), _KEPT_COST, 1.0)
     found = fewest_stopping(
         problem.closing_rows, base, pool, costs=costs, places=problem.candidates.places,
-        spacing=problem.limits.spacing, tolerances=problem.candidates.tolerances, cancelled=problem.cancelled,
+        spacing=problem.limits.spacing, standing=problem.standing, tolerances=problem.candidates.tolerances,
+        cancelled=problem.cancelled,
     )  # fmt: skip
     if found.chosen is None:
         return None
@@ -136,13 +138,16 @@ def _turned_round(problem: Problem, region: Region, rng: np.random.Generator) ->
     if region.out is None:
         chosen = fewest_closing(problem.rows, rng, tries=3, cancelled=problem.cancelled)
         if chosen is not None and len(chosen) == problem.candidates.freedoms + 1:
-            chosen, _ = held_best(problem.closing_rows, (), chosen, problem.new)
+            chosen, _ = held_best(problem.closing_rows, (), chosen, problem.new, standing=problem.standing)
+            if not problem.together(chosen):
+                return
             clamp = int(rng.integers(len(chosen)))
             yield _moved(problem, region, np.delete(chosen, clamp), chosen[[clamp]]), chosen[[clamp]]
         return
     clamps = region.clamps.chosen if region.clamps is not None else None
-    locators = None if clamps is None else locators_for(problem.rows, region.pool, clamps, rng)
-    if locators is not None and clamps is not None:
+    usable = problem.passing(region.pool, region.out)
+    locators = None if clamps is None or not len(usable) else locators_for(problem.rows, usable, clamps, rng)
+    if locators is not None and clamps is not None and problem.together(np.concatenate([locators, clamps])):
         yield _moved(problem, region, locators, clamps), clamps
 
 
@@ -153,15 +158,17 @@ def _moved(problem: Problem, region: Region, locators: Indices, clamps: Indices)
         float(margins(problem.closing_rows, start[None])[0]), max(GOOD_MARGIN, 2 * problem.candidates.tolerances.near)
     )
 
+    usable = problem.passing(region.pool, region.out)
+
     def allowed(chosen: Indices) -> np.ndarray:
         fit = []
         for place in range(len(chosen)):
             rest = np.concatenate([np.delete(chosen, place), clamps])
-            sets = np.column_stack([np.broadcast_to(rest, (len(region.pool), len(rest))), region.pool])
-            fit.append(margins(problem.closing_rows, sets) > least)
+            sets = np.column_stack([np.broadcast_to(rest, (len(usable), len(rest))), usable])
+            fit.append((margins(problem.closing_rows, sets) > least) & problem.joins(usable, rest))
         return np.array(fit)
 
-    return exchanged(problem.rows, region.pool, locators, (), problem.features, allowed)
+    return exchanged(problem.rows, usable, locators, (), problem.features, allowed)
 
 
 def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Found:
@@ -170,7 +177,7 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
     new = clamps[~np.isin(clamps, [*problem.clamps, *problem.spare])]
     if problem.closes is not None and closes(problem.closing_rows, np.concatenate([locators, clamps])):
         staying = np.concatenate([locators, clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]])
-        moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing)
+        moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing, problem.standing)
         clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
     return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin)
 

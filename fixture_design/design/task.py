@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from fixture_design.arrays import Point, Points, Vector
-from fixture_design.layout import KeyFeature, Layout, Load, Part, PointTip, Requirement, Space, Tip
+from fixture_design.layout import KeyFeature, Layout, Load, Part, PointTip, Requirement, Space, StemSizes, Tip
 from fixture_design.tolerances import SURFACE_GAP
 
 #: What is made small or large, in this order; `fewest` elements, the smallest error at the key features, the largest
@@ -35,7 +35,7 @@ class CandidateRules:
         facets: allowed ones by number; None allows all.
         keep_out: boxes (lowest corner, highest corner) in W without candidates [m].
         points: candidates as someone chose them, in W, instead of a spread.  grid: of a modular plate, likewise.
-        tip: of every new element.
+        tip: of every new element.  stem: sizes of what carries it, where these are not the usual ones.
     """
 
     spacing: float | None = None
@@ -45,6 +45,7 @@ class CandidateRules:
     points: Points | None = None
     grid: Grid | None = None
     tip: Tip = field(default_factory=PointTip)
+    stem: StemSizes = field(default_factory=StemSizes)
 
 
 @dataclass(frozen=True, eq=False)

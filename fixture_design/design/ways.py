@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol, runtime_checkable
 
+from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Scale
 from fixture_design.design.candidates import Spots
 from fixture_design.design.task import CandidateRules
-from fixture_design.layout import Layout, Verdict
+from fixture_design.layout import Layout, Stem, Verdict
 
 #: Told what is being done, in words, and what part of it is behind, from 0 to 1.
 Progress = Callable[[str, float], None]
@@ -29,6 +30,14 @@ class Ways(Protocol):
 
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         """Candidate points on the part in W, with their normals."""
+        ...
+
+    def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
+        """Which elements of some contacts in W, with unit normals, have room: they do not cut the part.
+
+        Args:
+            out: if given, also while the part leaves along this unit direction.
+        """
         ...
 
     def contacts(self, layout: Layout) -> Sequence[Contact]:

@@ -15,6 +15,7 @@ from fixture_design.geometry.planar_way import PlanarSurroundings
 from fixture_design.geometry.polygon import Polygon, polygon_of
 from fixture_design.geometry.polygon_sampling import given_polygon_points, sample_polygon
 from fixture_design.geometry.posed_scene import Overlap, PlacedBody, PosedScene, Scene
+from fixture_design.geometry.room import Places, with_room, with_way
 from fixture_design.geometry.sampling import SurfacePoints, given_points, grid_points, sample_surface
 from fixture_design.geometry.sampling_rules import Box, SamplingRules
 from fixture_design.geometry.sharp_edges import sharp_edges
@@ -29,6 +30,7 @@ __all__ = [
     "Overlap",
     "PartGeometry",
     "PlacedBody",
+    "Places",
     "PlanarSurroundings",
     "Polygon",
     "PosedScene",
@@ -54,4 +56,6 @@ __all__ = [
     "sharp_edges",
     "slide",
     "unreadable",
+    "with_room",
+    "with_way",
 ]

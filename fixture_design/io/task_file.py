@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
@@ -17,9 +18,9 @@ from fixture_design.io.layout_reading import layout_from_record, metres_of, tip_
 from fixture_design.io.plain_words import validated
 from fixture_design.io.problems import content_error
 from fixture_design.io.schema_key import require_schema
-from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, TaskRecord
+from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, StemRecord, TaskRecord
 from fixture_design.io.task_rules import as_layout, task_problems
-from fixture_design.layout import Layout, Part, Pose
+from fixture_design.layout import Layout, Part, Pose, StemSizes
 
 #: Endings of files that are tasks; all others are parts.
 TASK_ENDINGS = (".yaml", ".yml", ".json")
@@ -94,7 +95,13 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
         points=None if rules.points is None else read_only([point(values) for values in rules.points]),
         grid=None if rules.grid is None else Grid(point(rules.grid.origin), metres(rules.grid.pitch), rules.grid.plane),
         tip=tip_from_record(rules.tip, metres),
+        stem=_stem(rules.stem, metres),
     )
+
+
+def _stem(stem: StemRecord | None, metres: Callable[[float], float]) -> StemSizes:
+    given = {} if stem is None else stem.model_dump(exclude_none=True)
+    return StemSizes(**{key: metres(value) for key, value in given.items()})
 
 
 def _limits(limits: LimitsRecord, task: TaskRecord) -> Limits:

@@ -33,6 +33,16 @@ class GridRecord(Record):
     plane: Literal["xy", "yz", "xz"] = Field("xy", description="of the plate")
 
 
+class StemRecord(Record):
+    """What carries the tip of a new element; what is not given fits a part of this size."""
+
+    WANTED: ClassVar[str] = "a mapping such as {radius: 0.004, length: 0.03, body_radius: 0.01, body_length: 0.02}"
+    radius: Positive | None = Field(None, description="of the stem [length]")
+    length: Positive | None = Field(None, description="of the stem, from the tip [length]")
+    body_radius: Positive | None = Field(None, description="of the body behind the stem [length]")
+    body_length: Positive | None = Field(None, description="of the body [length]")
+
+
 class CandidatesRecord(Record):
     """Where elements may touch the part; at most one of spacing, points and grid."""
 
@@ -48,6 +58,7 @@ class CandidatesRecord(Record):
     )
     grid: GridRecord | None = None
     tip: TipField = Field(None, description="of new elements, default: point")
+    stem: StemRecord | None = None
 
 
 class LimitsRecord(Record):

@@ -53,6 +53,8 @@ def _candidate_problems(candidates: CandidatesRecord, planar: bool) -> Iterator[
             yield Problem(path, "the box's first corner is not its lowest", f"{low} and {high}", "[lowest, highest]")
     for index, point in enumerate(candidates.points or ()):
         yield from _count_problems(point, ("candidates", "points", index), planar)
+    if candidates.stem is not None and planar:
+        yield Problem(("candidates", "stem"), "stems are spatial: elements stand upright beside a planar part")
     if candidates.tip is not None and not given_keys(candidates.tip, _TIPS):
         expected = "point, {sphere: radius} or {soft: radius}"
         yield Problem(("candidates", "tip"), "design places no tips of this kind", expected=expected)

@@ -22,6 +22,7 @@ from fixture_design.layout.layout import (
     named_files,
 )
 from fixture_design.layout.pose import Pose
+from fixture_design.layout.stem import Column, Stem, StemSizes, stem_of
 from fixture_design.layout.use import (
     Balance,
     ContactForce,
@@ -58,6 +59,7 @@ __all__ = [
     "Answer",
     "Balance",
     "Body",
+    "Column",
     "ContactForce",
     "Counted",
     "Element",
@@ -92,6 +94,8 @@ __all__ = [
     "Space",
     "SphereTip",
     "Stage",
+    "Stem",
+    "StemSizes",
     "StraightWays",
     "Tip",
     "Unbalanced",
@@ -102,4 +106,5 @@ __all__ = [
     "groups_of",
     "named_files",
     "severity",
+    "stem_of",
 ]

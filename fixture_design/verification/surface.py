@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points
+from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Scale
 from fixture_design.errors import GeometryError, UnsupportedError, looking_at
-from fixture_design.layout import Layout, Part, Verdict
+from fixture_design.layout import Layout, Part, Stem, Verdict
 from fixture_design.verification.use import USE_QUESTIONS
 from fixture_design.verification.verify import QUESTIONS, contacts_of, verify
 
@@ -86,6 +86,26 @@ class PartSurface:
 
     def verify(self, layout: Layout) -> Verdict:
         return verify(layout)
+
+    def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
+        """Which elements cut the part neither with stem nor body; with ``out`` also while it leaves along that.
+
+        In the plane all fit: elements stand upright beside a planar part.
+
+        Args:
+            points, normals: of their contacts in W, shape (n, p); normals outward, of length 1.
+            out: of length 1, in W.
+        """
+        from fixture_design.geometry import Places, Polygon, with_room, with_way  # noqa: PLC0415 - as above
+
+        if isinstance(self.geometry, Polygon):
+            return np.ones(len(points), dtype=bool)
+        X_PW = self.part.pose.inverse()
+        places = Places(X_PW.points(points), X_PW.vectors(normals))
+        free = with_room(self.geometry, places, stem)
+        if out is not None:
+            free[free] = with_way(self.geometry, places.some(np.flatnonzero(free)), stem, X_PW.vectors(out[None])[0])
+        return free
 
     def spots(self, rules: CandidateWishes, seed: int) -> SurfacePoints:
         """Candidates where the rules let them be.

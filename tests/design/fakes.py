@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fixture_design.arrays import Points
+from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Provenance, Scale
 from fixture_design.design import CandidateRules, Task
 from fixture_design.design.candidates import Candidates
-from fixture_design.layout import Layout, Part, Pose, Verdict
+from fixture_design.layout import Layout, Part, Pose, Stem, Verdict
 from fixture_design.verification import verify
 
 
@@ -38,6 +38,9 @@ class Fake:
 
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         return self.given
+
+    def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
+        return np.ones(len(points), dtype=bool)
 
     def contacts(self, layout: Layout) -> tuple[Contact, ...]:
         found = []

@@ -1,0 +1,105 @@
+"""Elements that fit: candidates whose stem has room, stems out of each other's way, and the part past all of them.
+
+What this takes away is taken from candidates. Bounds are those of the candidates that are left: of a way out they are
+computed before elements in it are barred, on the relaxed problem, so that they hold for every layout that avoids them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fixture_design.arrays import Indices, Mask, Point
+from fixture_design.design.candidates import Candidates
+from fixture_design.design.found import Found
+from fixture_design.design.problem import Problem
+from fixture_design.design.standing import Standing
+from fixture_design.design.task import Task
+from fixture_design.design.ways import Ways
+from fixture_design.errors import GeometryError
+from fixture_design.layout import Element, PinTip, Stem, StraightWays, Verdict, element_name, stem_of
+
+#: Names of elements by candidate.
+Names = Mapping[int, str]
+
+
+def fitting(task: Task, ways: Ways, candidates: Candidates) -> tuple[Candidates, tuple[str, ...]]:
+    """Candidates whose stem and body do not cut the part, and a note of how many others there were.
+
+    Raises:
+        GeometryError: there are none.
+    """
+    stem = new_stem(task, candidates)
+    free = ways.fits(candidates.places, np.array(candidates.normals[:, 0]), stem)
+    if free.all():
+        return candidates, ()
+    if not free.any():
+        sizes = f"stem radius {stem.radius:.3g} m, length {stem.length:.3g} m, body radius {stem.body_radius:.3g} m"
+        problem = f"none of {len(free)} candidates has room for an element's stem and body"
+        raise GeometryError(
+            problem, found=sizes, expected="candidates: {stem: {radius: smaller, body_radius: smaller}}"
+        )
+    note = f"{int((~free).sum())} candidates were left out: stem or body of an element there would cut the part"
+    return candidates.chosen(free), (note,)
+
+
+def standing(task: Task, candidates: Candidates) -> Standing | None:
+    """The stems of candidates and of the start's elements; None in the plane, where elements stand upright."""
+    if task.space == "planar":
+        return None
+    size = candidates.scale.length
+    theirs = {element.name for element in task.start.elements} if task.start else set()
+    new = new_stem(task, candidates)
+    return Standing.of(candidates, [_stem(element, theirs, size, new) for element in candidates.elements])
+
+
+def new_stem(task: Task, candidates: Candidates) -> Stem:
+    return stem_of(task.candidates.tip, candidates.scale.length, task.candidates.stem)
+
+
+def _stem(element: Element | None, theirs: set[str], size: float, new: Stem) -> Stem | None:
+    """Of an element of the start as it is written; bodies, and contacts that were given, have none, nor have pins."""
+    if element is None:
+        return new
+    if element.name not in theirs or isinstance(element.tip, PinTip):
+        return None
+    return stem_of(element.tip, size)
+
+
+def in_the_way(ways: Ways, stem: Stem, problem: Problem, found: Found, verdict: Verdict, names: Names) -> Mask | None:
+    """Candidates that the part runs into on its way out, shape (n,); None if it comes out past the locators chosen.
+
+    What is in the way is the tip of a locator, as the verdict has it, or a tip, stem or body in the direction of the
+    verdict, or in that of the search. If one is, all candidates are asked at once, so that the next locator does not
+    stand where the same thing happens.
+    """
+    if found.out is None:
+        return None
+    new = found.locators[np.isin(found.locators, problem.new)]
+    use = _ways_out(verdict)
+    seen = None if use is None or use.obstacle is not None else use.direction
+    tried = [direction for direction in (seen, found.out) if direction is not None]
+    blocking = _tips(use, new, names)
+    if not len(blocking) and any(_fits(ways, stem, problem, new, direction).all() for direction in tried):
+        return None
+    hit = np.zeros(len(problem.candidates), dtype=bool)
+    hit[problem.new] = ~_fits(ways, stem, problem, problem.new, found.out)
+    hit[blocking] = True
+    return hit if hit[new].any() else None
+
+
+def _ways_out(verdict: Verdict) -> StraightWays | None:
+    finding = verdict.groups["locators"].findings.get("loadable")
+    return finding.use if finding is not None and isinstance(finding.use, StraightWays) else None
+
+
+def _tips(use: StraightWays | None, new: Indices, names: Names) -> Indices:
+    """New locators whose tips are in the way where every way is blocked."""
+    blocking = {element_name(obstacle.name) for obstacle in use.tried} if use is not None and use.obstacle else set()
+    return np.array([index for index in new.tolist() if names[index] in blocking], dtype=np.int64)
+
+
+def _fits(ways: Ways, stem: Stem, problem: Problem, which: Indices, out: Point) -> Mask:
+    candidates = problem.candidates
+    return ways.fits(candidates.places[which], np.array(candidates.normals[which, 0]), stem, out)
