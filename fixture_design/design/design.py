@@ -11,7 +11,7 @@ from fixture_design.arrays import Mask, Vector
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
-from fixture_design.design.fitting import fitting, in_the_way, new_stem, standing
+from fixture_design.design.fitting import fitting, in_the_way, standing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
 from fixture_design.design.problem import Problem
@@ -21,6 +21,7 @@ from fixture_design.design.shortfall import bound_of, refused, without_layout
 from fixture_design.design.start import Start, begun
 from fixture_design.design.steps import Step, additions, in_world
 from fixture_design.design.task import Task
+from fixture_design.design.touching import candidates_of
 from fixture_design.design.unstoppable import free_for_certain
 from fixture_design.design.ways import Progress, Ways
 from fixture_design.errors import GeometryError
@@ -63,8 +64,9 @@ def design(
     """
     ways = ways or _ways_of(task)
     progress("candidates", 0.0)
-    candidates = Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)
-    candidates, left_out_notes = fitting(task, ways, candidates)
+    candidates, left_out_notes = candidates_of(task, ways, ways.spots(task.candidates, seed))
+    candidates, no_room = fitting(task, ways, candidates)
+    left_out_notes += no_room
     best: DesignResult | None = None
     free: Vector | None = None
     for plan in plans(task, ways):
@@ -149,8 +151,7 @@ def _past_locators(
         return without_layout(problem, outcome, bound, start)
     result, names = _drawn_up(task, ways, problem, outcome, bound, start, plan)
     assert result.verdict is not None
-    stem = new_stem(task, problem.candidates)
-    hit = in_the_way(ways, stem, problem, outcome.found, result.verdict, names)
+    hit = in_the_way(task, ways, problem, outcome.found, result.verdict, names)
     if hit is None or problem.cancelled():
         return result
     assert outcome.found.out is not None

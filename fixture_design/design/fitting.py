@@ -18,7 +18,7 @@ from fixture_design.design.standing import Standing
 from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import GeometryError
-from fixture_design.layout import Element, PinTip, Stem, StraightWays, Verdict, element_name, stem_of
+from fixture_design.layout import PinTip, Stem, StraightWays, Tip, Verdict, element_name, stem_of
 
 #: Names of elements by candidate.
 Names = Mapping[int, str]
@@ -30,44 +30,54 @@ def fitting(task: Task, ways: Ways, candidates: Candidates) -> tuple[Candidates,
     Raises:
         GeometryError: there are none.
     """
-    stem = new_stem(task, candidates)
-    free = ways.fits(candidates.places, np.array(candidates.normals[:, 0]), stem)
+    free = _fits(task, ways, candidates, np.arange(len(candidates)))
     if free.all():
         return candidates, ()
     if not free.any():
-        sizes = f"stem radius {stem.radius:.3g} m, length {stem.length:.3g} m, body radius {stem.body_radius:.3g} m"
         problem = f"none of {len(free)} candidates has room for an element's stem and body"
-        raise GeometryError(
-            problem, found=sizes, expected="candidates: {stem: {radius: smaller, body_radius: smaller}}"
-        )
+        raise GeometryError(problem, expected="smaller ones: candidates: {stem: {radius: r, body_radius: r}}")
     note = f"{int((~free).sum())} candidates were left out: stem or body of an element there would cut the part"
     return candidates.chosen(free), (note,)
 
 
 def standing(task: Task, candidates: Candidates) -> Standing | None:
     """The stems of candidates and of the start's elements; None in the plane, where elements stand upright."""
-    if task.space == "planar":
-        return None
-    size = candidates.scale.length
+    return None if task.space == "planar" else Standing.of(candidates, _stems(task, candidates))
+
+
+def _stems(task: Task, candidates: Candidates) -> list[Stem | None]:
+    """Of new elements, and of the start's as they are written; bodies, contacts that were given, and pins have none."""
     theirs = {element.name for element in task.start.elements} if task.start else set()
-    new = new_stem(task, candidates)
-    return Standing.of(candidates, [_stem(element, theirs, size, new) for element in candidates.elements])
+    tips: list[Tip | None] = [
+        make.tip if make is not None else element.tip if element is not None and element.name in theirs else None
+        for make, element in zip(candidates.makes, candidates.elements, strict=True)
+    ]
+    known: dict[tuple[type[Tip], float | None], Stem] = {}
+    stems: list[Stem | None] = []
+    for tip in tips:
+        if tip is None or isinstance(tip, PinTip):
+            stems.append(None)
+            continue
+        key = (type(tip), getattr(tip, "radius", None))
+        if key not in known:
+            known[key] = stem_of(tip, candidates.scale.length, task.candidates.stem)
+        stems.append(known[key])
+    return stems
 
 
-def new_stem(task: Task, candidates: Candidates) -> Stem:
-    return stem_of(task.candidates.tip, candidates.scale.length, task.candidates.stem)
+def _fits(task: Task, ways: Ways, candidates: Candidates, which: Indices, out: Point | None = None) -> Mask:
+    """Which elements have room; those whose stem nobody knows have."""
+    stems = _stems(task, candidates)
+    free = np.ones(len(which), dtype=bool)
+    for stem in {stems[index] for index in which.tolist()} - {None}:
+        assert stem is not None
+        mine = np.array([stems[index] == stem for index in which.tolist()])
+        places, normals = candidates.places[which[mine]], np.array(candidates.normals[which[mine], 0])
+        free[mine] = ways.fits(places, normals, stem, out)
+    return free
 
 
-def _stem(element: Element | None, theirs: set[str], size: float, new: Stem) -> Stem | None:
-    """Of an element of the start as it is written; bodies, and contacts that were given, have none, nor have pins."""
-    if element is None:
-        return new
-    if element.name not in theirs or isinstance(element.tip, PinTip):
-        return None
-    return stem_of(element.tip, size)
-
-
-def in_the_way(ways: Ways, stem: Stem, problem: Problem, found: Found, verdict: Verdict, names: Names) -> Mask | None:
+def in_the_way(task: Task, ways: Ways, problem: Problem, found: Found, verdict: Verdict, names: Names) -> Mask | None:
     """Candidates that the part runs into on its way out, shape (n,); None if it comes out past the locators chosen.
 
     What is in the way is the tip of a locator, as the verdict has it, or a tip, stem or body in the direction of the
@@ -81,10 +91,10 @@ def in_the_way(ways: Ways, stem: Stem, problem: Problem, found: Found, verdict: 
     seen = None if use is None or use.obstacle is not None else use.direction
     tried = [direction for direction in (seen, found.out) if direction is not None]
     blocking = _tips(use, new, names)
-    if not len(blocking) and any(_fits(ways, stem, problem, new, direction).all() for direction in tried):
+    if not len(blocking) and any(_fits(task, ways, problem.candidates, new, direction).all() for direction in tried):
         return None
     hit = np.zeros(len(problem.candidates), dtype=bool)
-    hit[problem.new] = ~_fits(ways, stem, problem, problem.new, found.out)
+    hit[problem.new] = ~_fits(task, ways, problem.candidates, problem.new, found.out)
     hit[blocking] = True
     return hit if hit[new].any() else None
 
@@ -98,8 +108,3 @@ def _tips(use: StraightWays | None, new: Indices, names: Names) -> Indices:
     """New locators whose tips are in the way where every way is blocked."""
     blocking = {element_name(obstacle.name) for obstacle in use.tried} if use is not None and use.obstacle else set()
     return np.array([index for index in new.tolist() if names[index] in blocking], dtype=np.int64)
-
-
-def _fits(ways: Ways, stem: Stem, problem: Problem, which: Indices, out: Point) -> Mask:
-    candidates = problem.candidates
-    return ways.fits(candidates.places[which], np.array(candidates.normals[which, 0]), stem, out)

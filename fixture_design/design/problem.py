@@ -91,9 +91,19 @@ class Problem:
         return free_motion(rows, self.candidates.tolerances)
 
     def rows_of(self, candidates: Indices | tuple[int, ...]) -> Indices:
-        """Numbers of the rows of candidates that say something."""
+        """Numbers of the rows by which candidates locate, independent ones of each."""
         numbers = (np.asarray(candidates, dtype=np.int64)[:, None] * self.each + np.arange(self.each)).ravel()
-        return numbers[self.rows[numbers].any(axis=1)]
+        return numbers[self._locating[numbers]]
+
+    @cached_property
+    def _locating(self) -> Mask:
+        """Which of `rows` locate: of those of one candidate independent ones."""
+        return np.any(self.candidates.locating.reshape(len(self.rows), -1), axis=1)
+
+    @cached_property
+    def several(self) -> bool:
+        """Whether some new element would locate in more than one row, as a pad does."""
+        return bool((np.any(self.candidates.locating[self.new], axis=2).sum(axis=1) > 1).any())
 
     def owners(self, rows: Indices) -> Indices:
         """The candidates of rows, each once."""

@@ -19,6 +19,7 @@ from fixture_design.design.closing import fewest_closing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, inaccuracy, independent, volume
+from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
 from fixture_design.design.ways import Progress
@@ -42,7 +43,13 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
         progress(f"way out {number + 1} of {len(regions)}", number / len(regions))
         best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
     least = min((region.bound for region in regions), default=None)
-    return Outcome(best, least, complete, None if best is None else _best_accuracy(problem, regions, len(best.clamps)))
+    known = best is not None and not (problem.several and redundancy(problem, best.locators))
+    return Outcome(
+        best,
+        least,
+        complete,
+        _best_accuracy(problem, regions, len(best.clamps)) if best is not None and known else None,
+    )
 
 
 def _whatever_closes(problem: Problem, seed: int) -> Outcome:
@@ -93,6 +100,8 @@ def _sets(
 
 def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
     """Locators of a region after exchanges, the kept ones among them; None where there are not enough."""
+    if problem.several:
+        return located_elements(problem, problem.passing(region.pool, region.out), rng)
     kept = problem.rows_of(problem.locators)
     kept = independent(problem.rows, kept, (), rng, problem.candidates.freedoms) if len(kept) else kept
     usable = problem.passing(region.pool, region.out)
@@ -204,6 +213,8 @@ def _best_accuracy(problem: Problem, regions: Sequence[Region], clamps: int) -> 
 
 def accuracy(problem: Problem, locators: Indices) -> float:
     """Of locators; small is good."""
+    if problem.several:
+        return inexactness_of(problem, locators)
     numbers = problem.rows_of(locators)
     if problem.features is not None and len(numbers) == problem.candidates.dimension:
         return inaccuracy(problem.rows, problem.features, numbers)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fixture_design.design.found import Found, Outcome
+from fixture_design.design.locating_several import fewest_locators
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.start import Start
@@ -17,7 +18,8 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
     found = None if outcome.found is None else outcome.found.count
     if outcome.least_elements is not None:
         return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
-    locators, clamps = problem.candidates.freedoms, outcome.least_clamps
+    locators = fewest_locators(problem) if problem.several else problem.candidates.freedoms
+    clamps = outcome.least_clamps
     single = problem.each == 1 and problem.closes == "without friction"
     elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
     return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates))

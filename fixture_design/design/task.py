@@ -35,7 +35,8 @@ class CandidateRules:
         facets: allowed ones by number; None allows all.
         keep_out: boxes (lowest corner, highest corner) in W without candidates [m].
         points: candidates as someone chose them, in W, instead of a spread.  grid: of a modular plate, likewise.
-        tip: of every new element.  stem: sizes of what carries it, where these are not the usual ones.
+        tip: of new elements.  more_tips: that they may have instead.
+        stem: sizes of what carries a tip, where these are not the usual ones.
     """
 
     spacing: float | None = None
@@ -45,6 +46,7 @@ class CandidateRules:
     points: Points | None = None
     grid: Grid | None = None
     tip: Tip = field(default_factory=PointTip)
+    more_tips: tuple[Tip, ...] = ()
     stem: StemSizes = field(default_factory=StemSizes)
 
 

@@ -9,7 +9,7 @@ from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Scale
 from fixture_design.design.candidates import Spots
 from fixture_design.design.task import CandidateRules
-from fixture_design.layout import Layout, Stem, Verdict
+from fixture_design.layout import Element, Layout, Stem, Verdict
 
 #: Told what is being done, in words, and what part of it is behind, from 0 to 1.
 Progress = Callable[[str, float], None]
@@ -30,6 +30,10 @@ class Ways(Protocol):
 
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         """Candidate points on the part in W, with their normals."""
+        ...
+
+    def touching(self, elements: Sequence[Element]) -> Sequence[Sequence[Contact]]:
+        """The contacts that each element has by itself; none where it cannot stand."""
         ...
 
     def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:

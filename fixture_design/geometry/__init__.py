@@ -5,7 +5,12 @@ Drake, trimesh and shapely are imported when something is read or measured, not 
 
 from fixture_design.geometry.clear_way import Meeting, Surroundings
 from fixture_design.geometry.contact import contact_of, contacts_of_element, polygon_contact, polygon_contacts
-from fixture_design.geometry.elements import GeometryContacts, contacts_of_elements, load_geometry
+from fixture_design.geometry.elements import (
+    GeometryContacts,
+    contacts_of_elements,
+    contacts_one_by_one,
+    load_geometry,
+)
 from fixture_design.geometry.facets import Facet
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.mass import Mass, mass_of
@@ -42,6 +47,7 @@ __all__ = [
     "contact_of",
     "contacts_of_element",
     "contacts_of_elements",
+    "contacts_one_by_one",
     "given_points",
     "given_polygon_points",
     "grid_points",

@@ -87,6 +87,7 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
     def point(values: tuple[float, ...]) -> np.ndarray:
         return read_only([metres(value) for value in values])
 
+    tips = tuple(tip_from_record(tip, metres) for tip in rules.tips or (rules.tip,))
     return CandidateRules(
         spacing=None if rules.spacing is None else metres(rules.spacing),
         edge_margin=None if rules.edge_margin is None else metres(rules.edge_margin),
@@ -94,7 +95,8 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
         keep_out=tuple((point(region.box[0]), point(region.box[1])) for region in rules.keep_out),
         points=None if rules.points is None else read_only([point(values) for values in rules.points]),
         grid=None if rules.grid is None else Grid(point(rules.grid.origin), metres(rules.grid.pitch), rules.grid.plane),
-        tip=tip_from_record(rules.tip, metres),
+        tip=tips[0],
+        more_tips=tips[1:],
         stem=_stem(rules.stem, metres),
     )
 

@@ -58,6 +58,9 @@ class CandidatesRecord(Record):
     )
     grid: GridRecord | None = None
     tip: TipField = Field(None, description="of new elements, default: point")
+    tips: Annotated[tuple[TipField, ...], Field(strict=False, min_length=1)] | None = Field(
+        None, description="in place of `tip`: several, of which each new element has one"
+    )
     stem: StemRecord | None = None
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Scale
 from fixture_design.errors import GeometryError, UnsupportedError, looking_at
-from fixture_design.layout import Layout, Part, Stem, Verdict
+from fixture_design.layout import Element, Layout, Part, Stem, Verdict
 from fixture_design.verification.use import USE_QUESTIONS
 from fixture_design.verification.verify import QUESTIONS, contacts_of, verify
 
@@ -86,6 +86,12 @@ class PartSurface:
 
     def verify(self, layout: Layout) -> Verdict:
         return verify(layout)
+
+    def touching(self, elements: Sequence[Element]) -> Sequence[Sequence[Contact]]:
+        """The contacts that each element has by itself, without friction; none where it cannot stand."""
+        from fixture_design.geometry import contacts_one_by_one  # noqa: PLC0415 - as above
+
+        return contacts_one_by_one(elements, self.part, self.geometry, self.surface_gap)
 
     def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
         """Which elements cut the part neither with stem nor body; with ``out`` also while it leaves along that.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Provenance, Scale
 from fixture_design.design import CandidateRules, Task
 from fixture_design.design.candidates import Candidates
-from fixture_design.layout import Layout, Part, Pose, Stem, Verdict
+from fixture_design.layout import Element, Layout, Part, Pose, Stem, Verdict
 from fixture_design.verification import verify
 
 
@@ -38,6 +39,10 @@ class Fake:
 
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         return self.given
+
+    def touching(self, elements: Sequence[Element]) -> list[tuple[Contact, ...]]:
+        layout = Layout("alone")
+        return [self.contacts(replace(layout, elements=(element,))) for element in elements]
 
     def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
         return np.ones(len(points), dtype=bool)
