@@ -13,6 +13,7 @@ from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
 from fixture_design.design.fitting import fitting, in_the_way, standing
 from fixture_design.design.found import Found, Outcome
+from fixture_design.design.locating_several import redundancy
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
@@ -233,12 +234,14 @@ def _drawn_up(
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(problem, found.locators, found.clamps, names)), bound,
         found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
-        reason=reason, notes=tuple(_notes(task, problem)),
+        reason=reason, notes=tuple(_notes(task, problem, found)),
     )  # fmt: skip
     return result, names
 
 
-def _notes(task: Task, problem: Problem) -> Iterator[str]:
+def _notes(task: Task, problem: Problem, found: Found) -> Iterator[str]:
+    if problem.several and (twice := redundancy(problem, found.locators)):
+        yield f"{twice} rows of the locators say what others say: flat tips on faces that meet share a turn"
     elements = [problem.candidates.elements[index] for index in problem.kept.tolist()]
     if kept := [element.name for element in elements if element is not None and not element.fixed]:
         yield f"the bounds are those of layouts that keep {', '.join(kept)}"

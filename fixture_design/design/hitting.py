@@ -162,9 +162,11 @@ def _strongest(
         tried[candidate] = True
         other = free_motion(np.vstack([inside, rows[pool[candidate]]]), tolerances)
         failures += 1
-        if other is not None:
-            motion, failures = other, 0
-            cut &= stops(rows[pool], motion, tolerances.near)
-            cut[candidate] = False
+        if other is None:
+            continue
+        fewer = cut & stops(rows[pool], other, tolerances.near)
+        fewer[candidate] = False
+        if fewer.any():  # else it is free only up to rounding: all together do stop it
+            motion, cut, failures = other, fewer, 0
             inside = flat(rows, np.concatenate([base, pool[~cut]]))
     return motion, cut

@@ -64,7 +64,7 @@ def inexactness(problem: Problem, stacks: Several, levers: Float[np.ndarray, "n 
     Args:
         stacks: unit rows of n sets, k each, shape (n, k, d).  levers: by which they have |n| = 1.
     """
-    inside = stacks @ _directions(problem).T
+    inside = stacks @ problem.noticed.T
     values = np.linalg.svd(inside, compute_uv=False)
     whole = values[:, -1] > DEFAULT.near if inside.shape[1] >= inside.shape[2] else np.zeros(len(stacks), dtype=bool)
     if problem.features is None or problem.candidates.freedoms < problem.candidates.dimension:
@@ -91,11 +91,6 @@ def _one_normal(problem: Problem, index: int) -> bool:
     normals = problem.candidates.normals[index]
     given = normals[np.any(normals, axis=1)]
     return bool(np.abs(given - given[0]).max() <= DEFAULT.tie)
-
-
-def _directions(problem: Problem) -> Rows:
-    """Orthonormal rows that span all that candidates can notice."""
-    return np.linalg.svd(problem.rows, full_matrices=False)[2][: problem.candidates.freedoms]
 
 
 def _levers(problem: Problem, numbers: Int[np.ndarray, "*s"]) -> Float[np.ndarray, "*s"]:

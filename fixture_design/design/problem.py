@@ -96,6 +96,11 @@ class Problem:
         return numbers[self._locating[numbers]]
 
     @cached_property
+    def noticed(self) -> Rows:
+        """Orthonormal rows that span all that candidates can notice."""
+        return np.linalg.svd(self.rows, full_matrices=False)[2][: self.candidates.freedoms]
+
+    @cached_property
     def _locating(self) -> Mask:
         """Which of `rows` locate: of those of one candidate independent ones."""
         return np.any(self.candidates.locating.reshape(len(self.rows), -1), axis=1)
