@@ -14,6 +14,7 @@ from fixture_design.design.features import features_of
 from fixture_design.design.fitting import fitting, in_the_way, standing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import redundancy
+from fixture_design.design.pinned import best_pinned
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
@@ -136,17 +137,42 @@ def _designed(
         free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
         return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
     try:
-        return _past_locators(task, ways, problem, start, plan, seed, progress)
+        pinned = _with_pins(task, ways, problem, start, plan, seed, progress)
+        if pinned is not None and pinned.satisfied is Answer.YES:
+            return pinned
+        found = _past_locators(task, ways, problem, start, plan, seed, progress)
+        if task.candidates.pins is None:
+            return found
+        why = "no two of its holes take a pin each" if pinned is None else pinned.reason or "the layout is not certain"
+        note = f"without pins: {why}"
+        return replace(found, notes=(*found.notes, note)) if pinned is None else _better(found, pinned)
     except _UselessError as error:
         kept = candidates.chosen(~error.useless[: len(candidates)])
         return _designed(task, ways, kept, plan, keep_all, seed, progress, cancelled)
 
 
-def _past_locators(
+def _with_pins(
     task: Task, ways: Ways, problem: Problem, start: Start, plan: Plan, seed: int, progress: Progress
+) -> DesignResult | None:
+    """A plane and two pins; None where that is not asked for, or the part has no holes for them."""
+    if task.candidates.pins is None or not (problem.leaves and problem.locates):
+        return None
+    best = best_pinned(task, ways, problem, seed, progress)
+    return None if best is None else _past_locators(task, ways, best[0].problem, start, plan, seed, progress, best[1])
+
+
+def _past_locators(
+    task: Task,
+    ways: Ways,
+    problem: Problem,
+    start: Start,
+    plan: Plan,
+    seed: int,
+    progress: Progress,
+    find: Callable[[Problem, int, Progress], Outcome] = search,
 ) -> DesignResult:
     """What the search finds; searched again, a few times, without locators that the part runs into on its way out."""
-    outcome = search(problem, seed, progress)
+    outcome = find(problem, seed, progress)
     bound = bound_of(problem, outcome)
     if outcome.found is None or refused(task, outcome.found):
         return without_layout(problem, outcome, bound, start)
@@ -161,7 +187,7 @@ def _past_locators(
     if len(problem.barred) == MOST_BARRED:
         return replace(result, notes=(*result.notes, f"in the part's way out: {where}; no more was tried"))
     barred = replace(problem, barred=(*problem.barred, (outcome.found.out, hit)))
-    again = _past_locators(task, ways, barred, start, plan, seed, progress)
+    again = _past_locators(task, ways, barred, start, plan, seed, progress, find)
     if again.layout is None or _RANK[again.satisfied] < _RANK[result.satisfied]:
         return replace(result, notes=(*result.notes, f"in the part's way out: {where}; nothing better was found"))
     motion = np.pad(outcome.found.out, (0, problem.candidates.dimension - len(outcome.found.out)))
@@ -232,7 +258,7 @@ def _drawn_up(
     result = DesignResult(
         # a layout that fails does not prove that none holds
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
-        (*start.steps, *spare, *additions(problem, found.locators, found.clamps, names)), bound,
+        (*start.steps, *spare, *additions(replace(problem, locators=start.locators), found.locators, found.clamps, names)), bound,
         found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
         reason=reason, notes=tuple(_notes(task, problem, found)),
     )  # fmt: skip

@@ -15,14 +15,15 @@ def named(candidates: Candidates, locators: Indices, clamps: Indices, taken: Seq
     """Names of elements by candidate: their own, or L1, L2, ... and K1, K2, ... where these are not taken."""
     names: dict[int, str] = {}
     for letter, chosen in (("L", locators), ("K", clamps)):
-        fresh = _fresh(letter, {*taken, *(e.name for e in candidates.elements if e is not None)})
+        fresh = fresh_names(letter, {*taken, *(e.name for e in candidates.elements if e is not None)})
         for index in chosen.tolist():
             element = candidates.elements[index]
             names[index] = next(fresh) if element is None else element.name
     return names
 
 
-def _fresh(letter: str, taken: set[str]) -> Iterator[str]:
+def fresh_names(letter: str, taken: set[str]) -> Iterator[str]:
+    """L1, L2, ... without those that are taken."""
     number = 0
     while True:
         number += 1

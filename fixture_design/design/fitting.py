@@ -18,7 +18,7 @@ from fixture_design.design.standing import Standing
 from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import GeometryError
-from fixture_design.layout import PinTip, Stem, StraightWays, Tip, Verdict, element_name, stem_of
+from fixture_design.layout import PinTip, Stem, StraightWays, Tip, Verdict, element_name, pin_stem, stem_of
 
 #: Names of elements by candidate.
 Names = Mapping[int, str]
@@ -42,12 +42,26 @@ def fitting(task: Task, ways: Ways, candidates: Candidates) -> tuple[Candidates,
 
 def standing(task: Task, candidates: Candidates) -> Standing | None:
     """The stems of candidates and of the start's elements; None in the plane, where elements stand upright."""
-    return None if task.space == "planar" else Standing.of(candidates, _stems(task, candidates))
+    if task.space == "planar":
+        return None
+    stems, feet, normals = _stems(task, candidates), candidates.places.copy(), np.array(candidates.normals[:, 0])
+    theirs = _names_of_start(task)
+    for index, element in enumerate(candidates.elements):
+        # pins of the design point out of their stems; those of the start may point either way
+        if element is not None and element.name not in theirs and isinstance(element.tip, PinTip):
+            assert element.axis is not None
+            stems[index] = pin_stem(element.tip, candidates.scale.length)
+            normals[index] = -np.asarray(element.axis)
+    return Standing.of(feet, normals, stems)
+
+
+def _names_of_start(task: Task) -> set[str]:
+    return {element.name for element in task.start.elements} if task.start else set()
 
 
 def _stems(task: Task, candidates: Candidates) -> list[Stem | None]:
     """Of new elements, and of the start's as they are written; bodies, contacts that were given, and pins have none."""
-    theirs = {element.name for element in task.start.elements} if task.start else set()
+    theirs = _names_of_start(task)
     tips: list[Tip | None] = [
         make.tip if make is not None else element.tip if element is not None and element.name in theirs else None
         for make, element in zip(candidates.makes, candidates.elements, strict=True)

@@ -43,16 +43,17 @@ def located_elements(problem: Problem, pool: Indices, rng: np.random.Generator) 
 
 
 def fewest_locators(problem: Problem) -> int:
-    """No fewer elements determine what the candidates can notice.
+    """No fewer elements determine what the candidates can notice, counted with those that stay.
 
-    By counting ranks, at most r each: ceil(freedoms / r). Rows of tips flat on a face in space are forces along one
+    By counting ranks, at most r each of new ones: ceil(freedoms / r). Rows of tips flat on a face in space are forces along one
     normal, of rank 3; two faces share the moment across both normals, so that two such tips have rank 5 at most.
     """
-    counts = np.any(problem.candidates.locating, axis=2).sum(axis=1)
+    counts = np.any(problem.candidates.locating, axis=2).sum(axis=1)[problem.new]
     most = int(counts.max(initial=1))
-    least = -(-problem.candidates.freedoms // most)
-    flat_tips = most == 3 and all(_one_normal(problem, index) for index in np.flatnonzero(counts == most).tolist())
-    return max(least, 3) if problem.candidates.freedoms == 6 and flat_tips else least
+    missing = problem.candidates.freedoms - len(_span(problem, problem.locators))
+    least = -(-missing // most)
+    flat_tips = most == 3 and all(_one_normal(problem, index) for index in problem.new[counts == most].tolist())
+    return len(problem.locators) + (max(least, 3) if missing == 6 and flat_tips else least)
 
 
 def inexactness(problem: Problem, stacks: Several, levers: Float[np.ndarray, "n k"]) -> Weights:

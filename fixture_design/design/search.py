@@ -52,6 +52,13 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
     )
 
 
+def search_region(problem: Problem, region: Region, seed: int) -> Outcome:
+    """The best layout of one region, with its bounds."""
+    best = _better_within(problem, region, np.random.default_rng(seed), None)
+    exact = None if best is None else _best_accuracy(problem, [region], len(best.clamps))
+    return Outcome(best, region.bound, True, exact)
+
+
 def _whatever_closes(problem: Problem, seed: int) -> Outcome:
     """As few elements as close; the last one is the clamp."""
     chosen, least = closing_elements(problem, seed)

@@ -18,7 +18,7 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
     found = None if outcome.found is None else outcome.found.count
     if outcome.least_elements is not None:
         return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
-    locators = fewest_locators(problem) if problem.several else problem.candidates.freedoms
+    locators = fewest_locators(problem)
     clamps = outcome.least_clamps
     single = problem.each == 1 and problem.closes == "without friction"
     elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)

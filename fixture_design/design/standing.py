@@ -18,7 +18,7 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Mask, Point, Points, Weights
-from fixture_design.design.candidates import Candidates, Several
+from fixture_design.design.candidates import Several
 from fixture_design.layout import Stem
 
 #: Sine of an angle, squared, below which two stems are parallel [-].
@@ -40,14 +40,13 @@ class Standing:
     _known: dict[int, Mask] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, candidates: Candidates, stems: Sequence[Stem | None]) -> Standing:
-        """Candidates with their stems; None for what is mounted in a way that nobody knows."""
+    def of(cls, feet: Points, normals: Points, stems: Sequence[Stem | None]) -> Standing:
+        """Elements with their stems, along ``normals`` from their feet, shape (n, 3); None for who knows how."""
         sizes = {stem: np.array(_capsules(stem)) for stem in set(stems) if stem is not None}
         none = np.array([(0.0, 1.0, -np.inf)] * 2)
         low, high, radii = np.array([none if stem is None else sizes[stem] for stem in stems]).transpose(2, 0, 1)
-        normals = candidates.normals[:, :1]
-        starts = candidates.points[:, :1] + low[:, :, None] * normals
-        return cls(starts, (high - low)[:, :, None] * normals, radii)
+        along = normals[:, None]
+        return cls(feet[:, None] + low[:, :, None] * along, (high - low)[:, :, None] * along, radii)
 
     def beside(self, index: int) -> Mask:
         """Which candidates may stand beside one, shape (n,)."""

@@ -25,6 +25,14 @@ class Grid:
     plane: Literal["xy", "yz", "xz"] = "xy"
 
 
+@dataclass(frozen=True)
+class PinRules:
+    """Pins that may stand in the part's holes: as thick as the hole less ``clearance``, ``diameters`` from and to [m]."""
+
+    clearance: float
+    diameters: tuple[float, float]
+
+
 @dataclass(frozen=True, eq=False)
 class CandidateRules:
     """Where elements may touch the part.
@@ -36,6 +44,7 @@ class CandidateRules:
         keep_out: boxes (lowest corner, highest corner) in W without candidates [m].
         points: candidates as someone chose them, in W, instead of a spread.  grid: of a modular plate, likewise.
         tip: of new elements.  more_tips: that they may have instead.
+        pins: a round and a diamond pin in two holes are tried first; None for none.
         stem: sizes of what carries a tip, where these are not the usual ones.
     """
 
@@ -47,6 +56,7 @@ class CandidateRules:
     grid: Grid | None = None
     tip: Tip = field(default_factory=PointTip)
     more_tips: tuple[Tip, ...] = ()
+    pins: PinRules | None = None
     stem: StemSizes = field(default_factory=StemSizes)
 
 

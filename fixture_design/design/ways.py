@@ -16,6 +16,22 @@ Progress = Callable[[str, float], None]
 
 
 @runtime_checkable
+class Hole(Protocol):
+    """A round hole or a slot of the part in W, as `geometry.Hole` has it."""
+
+    @property
+    def feature(self) -> str: ...
+    @property
+    def low(self) -> Point: ...
+    @property
+    def high(self) -> Point: ...
+    @property
+    def diameter(self) -> float: ...
+    @property
+    def across(self) -> Point | None: ...
+
+
+@runtime_checkable
 class Ways(Protocol):
     """How a part is touched, and how a layout is judged."""
 
@@ -42,6 +58,10 @@ class Ways(Protocol):
         Args:
             out: if given, also while the part leaves along this unit direction.
         """
+        ...
+
+    def holes(self) -> tuple[Hole, ...]:
+        """The holes and slots that pins could be in."""
         ...
 
     def contacts(self, layout: Layout) -> Sequence[Contact]:

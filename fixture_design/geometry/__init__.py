@@ -12,6 +12,7 @@ from fixture_design.geometry.elements import (
     load_geometry,
 )
 from fixture_design.geometry.facets import Facet
+from fixture_design.geometry.holes import Hole, holes_of
 from fixture_design.geometry.load import load_part
 from fixture_design.geometry.mass import Mass, mass_of
 from fixture_design.geometry.mesh_file import unreadable
@@ -30,6 +31,7 @@ __all__ = [
     "Box",
     "Facet",
     "GeometryContacts",
+    "Hole",
     "Mass",
     "Meeting",
     "Overlap",
@@ -51,6 +53,7 @@ __all__ = [
     "given_points",
     "given_polygon_points",
     "grid_points",
+    "holes_of",
     "load_geometry",
     "load_part",
     "mass_of",

@@ -22,7 +22,7 @@ from fixture_design.layout.layout import (
     named_files,
 )
 from fixture_design.layout.pose import Pose
-from fixture_design.layout.stem import Column, Stem, StemSizes, stem_of
+from fixture_design.layout.stem import PIN_REACH, Column, Stem, StemSizes, pin_stem, stem_of
 from fixture_design.layout.use import (
     Balance,
     ContactForce,
@@ -55,6 +55,7 @@ from fixture_design.layout.verdict import (
 )
 
 __all__ = [
+    "PIN_REACH",
     "USE_CLAIMS",
     "Answer",
     "Balance",
@@ -105,6 +106,7 @@ __all__ = [
     "element_name",
     "groups_of",
     "named_files",
+    "pin_stem",
     "severity",
     "stem_of",
 ]

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fixture_design.layout.layout import LineTip, PadTip, SoftTip, SphereTip, Tip
+from fixture_design.layout.layout import LineTip, PadTip, PinTip, SoftTip, SphereTip, Tip
 
 #: Radius of a point's ball, length of a stem, radius and length of a body, as parts of half the diagonal of the part's
 #: box [-].
 _BALL, _LENGTH, _BODY_RADIUS, _BODY_LENGTH = 0.02, 0.2, 0.06, 0.12
 #: A stem's radius next to its ball's [-].
 _SLIM = 0.8
+#: How far a pin reaches beyond where it locates, and where its stem begins behind that, by its diameter [-].
+PIN_REACH, _PIN_END = 0.25, 0.02
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,22 @@ class Stem:
         """Stem and body, nearest to the part first."""
         shoulder = self.tip + self.length
         return Column(self.tip, shoulder, self.radius), Column(shoulder, shoulder + self.body_length, self.body_radius)
+
+
+def pin_stem(tip: PinTip, size: float) -> Stem:
+    """Of a pin: itself, behind where it locates, and a body; along the axis, away from the pin's end.
+
+    Args:
+        size: half the diagonal of the part's box [m].
+    """
+    return Stem(
+        tip=_PIN_END * tip.diameter,
+        radius=tip.diameter / 2,
+        length=max(_LENGTH * size, 2 * tip.diameter),
+        body_radius=max(_BODY_RADIUS * size, tip.diameter),
+        body_length=_BODY_LENGTH * size,
+        flat=True,
+    )
 
 
 def stem_of(tip: Tip, size: float, sizes: StemSizes | None = None) -> Stem:

@@ -16,7 +16,7 @@ from fixture_design.verification.use import USE_QUESTIONS
 from fixture_design.verification.verify import QUESTIONS, contacts_of, verify
 
 if TYPE_CHECKING:
-    from fixture_design.geometry import PartGeometry, Polygon, SurfacePoints
+    from fixture_design.geometry import Hole, PartGeometry, Polygon, SurfacePoints
 
 #: Candidates that a part gets where no spacing is asked for, about [-], and of a planar one.
 _SPATIAL, _PLANAR = 400, 80
@@ -92,6 +92,12 @@ class PartSurface:
         from fixture_design.geometry import contacts_one_by_one  # noqa: PLC0415 - as above
 
         return contacts_one_by_one(elements, self.part, self.geometry, self.surface_gap)
+
+    def holes(self) -> tuple[Hole, ...]:
+        """The holes and slots that pins could be in; a planar part has none."""
+        from fixture_design.geometry import Polygon, holes_of  # noqa: PLC0415 - as above
+
+        return () if isinstance(self.geometry, Polygon) else holes_of(self.geometry, self.part.pose)
 
     def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
         """Which elements cut the part neither with stem nor body; with ``out`` also while it leaves along that.

@@ -11,6 +11,7 @@ from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Provenance, Scale
 from fixture_design.design import CandidateRules, Task
 from fixture_design.design.candidates import Candidates
+from fixture_design.design.ways import Hole
 from fixture_design.layout import Element, Layout, Part, Pose, Stem, Verdict
 from fixture_design.verification import verify
 
@@ -43,6 +44,9 @@ class Fake:
     def touching(self, elements: Sequence[Element]) -> list[tuple[Contact, ...]]:
         layout = Layout("alone")
         return [self.contacts(replace(layout, elements=(element,))) for element in elements]
+
+    def holes(self) -> tuple[Hole, ...]:
+        return ()
 
     def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
         return np.ones(len(points), dtype=bool)

@@ -45,7 +45,7 @@ def test_distances_between_segments_are_those_of_many_points_on_them() -> None:
 def test_stems_collide_where_sampled_capsules_overlap() -> None:
     spots = candidates(box(20, 2))
     stem = Stem(0.002, 0.002, 0.01, 0.006, 0.01)
-    stands = Standing.of(spots, [stem] * (len(spots) - 1) + [None])
+    stands = Standing.of(spots.places, spots.normals[:, 0], [stem] * (len(spots) - 1) + [None])
     heights = [np.linspace(c.low, c.high, 60) for c in stem.columns]
     radii = [stem.radius, stem.body_radius]
     points, normals = spots.places, spots.normals[:, 0]
