@@ -11,10 +11,10 @@ from fixture_design.arrays import Mask, Vector
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
-from fixture_design.design.fitting import fitting, in_the_way, standing
+from fixture_design.design.fitting import fitting, in_every_way, in_the_way, standing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import redundancy
-from fixture_design.design.pinned import best_pinned
+from fixture_design.design.pinned import pinned_best_first
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
@@ -31,6 +31,8 @@ from fixture_design.layout import Answer
 
 #: How often a way out is searched again without locators that turned out to be in it.
 MOST_BARRED = 8
+#: How many pairs of holes are verified before pins are given up.
+MOST_PINNED = 6
 
 _RANK = {Answer.YES: 2, Answer.UNDECIDED: 1, Answer.NO: 0}
 
@@ -131,24 +133,40 @@ def _designed(
     if start.conflict:
         reason = f"{', '.join(start.conflict)} must stay, and let the part neither in nor out"
         return DesignResult(Answer.NO, None, steps=start.steps, reason=reason)
-    if problem.never_stopped is not None:
-        return _unstoppable(task, ways, problem, candidates, start)
-    if "deterministic" in locators and problem.candidates.freedoms < problem.candidates.dimension:
-        free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
-        return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
     try:
         pinned = _with_pins(task, ways, problem, start, plan, seed, progress)
         if pinned is not None and pinned.satisfied is Answer.YES:
             return pinned
-        found = _past_locators(task, ways, problem, start, plan, seed, progress)
-        if task.candidates.pins is None:
-            return found
-        why = "no two of its holes take a pin each" if pinned is None else pinned.reason or "the layout is not certain"
-        note = f"without pins: {why}"
-        return replace(found, notes=(*found.notes, note)) if pinned is None else _better(found, pinned)
+        found = _by_points(task, ways, problem, candidates, start, plan, seed, progress)
     except _UselessError as error:
         kept = candidates.chosen(~error.useless[: len(candidates)])
         return _designed(task, ways, kept, plan, keep_all, seed, progress, cancelled)
+    if task.candidates.pins is None:
+        return found
+    note = "without pins: no two holes of the part take a pin each in a way that lets it out and closes it"
+    return replace(found, notes=(*found.notes, note)) if pinned is None else _better(found, pinned)
+
+
+def _by_points(
+    task: Task,
+    ways: Ways,
+    problem: Problem,
+    candidates: Candidates,
+    start: Start,
+    plan: Plan,
+    seed: int,
+    progress: Progress,
+) -> DesignResult:
+    """Tips on the surface alone, as far as they can notice and stop what is asked."""
+    if problem.never_stopped is not None:
+        return _unstoppable(task, ways, problem, candidates, start)
+    if (
+        "deterministic" in plan.require.get("locators", ())
+        and problem.candidates.freedoms < problem.candidates.dimension
+    ):
+        free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
+        return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
+    return _past_locators(task, ways, problem, start, plan, seed, progress)
 
 
 def _with_pins(
@@ -157,8 +175,19 @@ def _with_pins(
     """A plane and two pins; None where that is not asked for, or the part has no holes for them."""
     if task.candidates.pins is None or not (problem.leaves and problem.locates):
         return None
-    best = best_pinned(task, ways, problem, seed, progress)
-    return None if best is None else _past_locators(task, ways, best[0].problem, start, plan, seed, progress, best[1])
+    best: DesignResult | None = None
+    blocked: set[str] = set()
+    tried = 0
+    for pinned, find in pinned_best_first(task, ways, problem, seed, progress):
+        if blocked & set(pinned.holes.values()):
+            continue
+        found = _past_locators(task, ways, pinned.problem, start, plan, seed, progress, find)
+        best, tried = found if best is None else _better(best, found), tried + 1
+        if best.satisfied is Answer.YES or problem.cancelled() or tried == MOST_PINNED:
+            break
+        # a hole that the part cannot leave its pin by is no better for another pair
+        blocked |= {pinned.holes[name] for name in in_every_way(found.verdict) if name in pinned.holes}
+    return best
 
 
 def _past_locators(
@@ -255,10 +284,11 @@ def _drawn_up(
         "force_closure" if problem.closes == "with friction" else "form_closure"
     )
     reason = plan.reason if answer is Answer.YES else "the layout that was found does not verify"
+    shown = replace(problem, locators=start.locators)  # new pins have their reasons too
     result = DesignResult(
         # a layout that fails does not prove that none holds
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
-        (*start.steps, *spare, *additions(replace(problem, locators=start.locators), found.locators, found.clamps, names)), bound,
+        (*start.steps, *spare, *additions(shown, found.locators, found.clamps, names)), bound,
         found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
         reason=reason, notes=tuple(_notes(task, problem, found)),
     )  # fmt: skip

@@ -45,8 +45,9 @@ def located_elements(problem: Problem, pool: Indices, rng: np.random.Generator) 
 def fewest_locators(problem: Problem) -> int:
     """No fewer elements determine what the candidates can notice, counted with those that stay.
 
-    By counting ranks, at most r each of new ones: ceil(freedoms / r). Rows of tips flat on a face in space are forces along one
-    normal, of rank 3; two faces share the moment across both normals, so that two such tips have rank 5 at most.
+    By counting ranks, at most r each of new ones: ceil(freedoms / r). Rows of tips flat on a face in space are forces
+    along one normal, of rank 3; two faces share the moment across both normals, so that two such tips have rank 5 at
+    most.
     """
     counts = np.any(problem.candidates.locating, axis=2).sum(axis=1)[problem.new]
     most = int(counts.max(initial=1))

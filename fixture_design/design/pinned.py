@@ -10,7 +10,7 @@ Bounds are those of layouts with such a pair, of the pairs that were tried.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import permutations
 
@@ -30,7 +30,7 @@ from fixture_design.layout import Element, PinTip, pin_stem
 from fixture_design.tolerances import COPLANAR_ANGLE
 
 #: Pairs of holes that are tried for each way out, widest first.
-MOST_PAIRS = 4
+MOST_PAIRS = 6
 #: Two holes whose axes are no further apart than this part of their diameter are one behind the other [-].
 _SAME_AXIS = 0.5
 #: A slot takes the turn if its walls are square to the line to the hole within this cosine [-].
@@ -39,10 +39,15 @@ _ACROSS = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Pinned:
-    """A problem with two pins among what stays, and the way out along them."""
+    """A problem with two pins among what stays, and the way out along them.
+
+    Attributes:
+        holes: the surface that each pin touches, by the pin's name.
+    """
 
     problem: Problem
     out: Point
+    holes: Mapping[str, str]
 
     def search(self, problem: Problem, seed: int, progress: Progress) -> Outcome:
         """Of a problem like this one's, with its way out alone."""
@@ -50,18 +55,23 @@ class Pinned:
         return search_region(problem, region, seed) if region is not None else Outcome(None, None, True)
 
 
-def best_pinned(
-    task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress
-) -> tuple[Pinned, Callable[[Problem, int, Progress], Outcome]] | None:
-    """The pair of pins with the best layout, and the search that finds it; None where no pair has any.
+#: Finds the best layout of a problem; its arguments are those of `search`.
+Find = Callable[[Problem, int, Progress], Outcome]
 
-    The outcome's bound of clamps is the least of all pairs, complete only if all pairs that there are were tried.
+
+def pinned_best_first(
+    task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress
+) -> list[tuple[Pinned, Find]]:
+    """Problems with a pair of pins kept, each with the search that finds its best layout, best first.
+
+    The bound of clamps that the searches give is the least of all pairs, complete only if all that there are were
+    tried.
     """
     rules = task.candidates.pins
     assert rules is not None
-    best: tuple[Pinned, Outcome] | None = None
-    least, complete = np.inf, True
-    pairs, every = _pairs(ways.holes(), rules, problem.limits.loading)
+    found: list[tuple[tuple[float, ...], Pinned]] = []
+    least = np.inf
+    pairs, complete = _pairs(ways.holes(), rules, problem.limits.loading)
     for number, (first, second, out) in enumerate(pairs):
         if problem.cancelled():
             complete = False
@@ -72,22 +82,17 @@ def best_pinned(
         if pinned is None or outcome is None or outcome.least_clamps is None:
             continue
         least = min(least, outcome.least_clamps)
-        if outcome.found is not None and (best is None or _better(problem, outcome, best[1])):
-            best = pinned, outcome
-    if best is None:
-        return None
-    chosen = best[0]
+        if outcome.found is not None:
+            found.append((outcome.found.score(problem.objective), pinned))
+    found.sort(key=lambda scored: scored[0])
+    return [(pinned, _bounded_by(pinned, least, complete)) for _, pinned in found]
 
+
+def _bounded_by(pinned: Pinned, least: float, complete: bool) -> Find:
     def again(problem: Problem, seed: int, progress: Progress) -> Outcome:
-        return replace(chosen.search(problem, seed, progress), least_clamps=int(least), complete=complete and every)
+        return replace(pinned.search(problem, seed, progress), least_clamps=int(least), complete=complete)
 
-    return chosen, again
-
-
-def _better(problem: Problem, outcome: Outcome, than: Outcome) -> bool:
-    assert outcome.found is not None
-    assert than.found is not None
-    return outcome.found.score(problem.objective) < than.found.score(problem.objective)
+    return again
 
 
 def _pairs(
@@ -147,7 +152,7 @@ def _with_pins(
         features=features_of(task, candidates),
         standing=standing(task, candidates),
     )
-    return Pinned(changed, out)
+    return Pinned(changed, out, {pin.name: hole.feature for pin, hole in zip(pins, holes, strict=True)})
 
 
 def _pins(

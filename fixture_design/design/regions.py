@@ -66,7 +66,7 @@ def regions_of(problem: Problem, seed: int) -> tuple[list[Region], bool]:
 
 
 def bounded_region(problem: Problem, out: Point) -> Region | None:
-    """New candidates that a direction out leaves, and how few clamps could close with them; None if they are too few."""
+    """New candidates that a direction leaves, and how few clamps could close with them; None if they are too few."""
     products = problem.candidates.normals @ out
     said = np.any(problem.candidates.normals, axis=2)
     leaves: Mask = np.all(~said | (products < -COPLANAR_ANGLE), axis=1)

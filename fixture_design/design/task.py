@@ -27,7 +27,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class PinRules:
-    """Pins that may stand in the part's holes: as thick as the hole less ``clearance``, ``diameters`` from and to [m]."""
+    """Pins that may stand in the part's holes, as thick as these less ``clearance``; ``diameters`` from and to [m]."""
 
     clearance: float
     diameters: tuple[float, float]

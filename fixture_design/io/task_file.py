@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from fixture_design.arrays import read_only
-from fixture_design.design import CandidateRules, Grid, Limits, Task
+from fixture_design.design import CandidateRules, Grid, Limits, PinRules, Task
 from fixture_design.errors import FileFormatError
 from fixture_design.io.documents import read_document
 from fixture_design.io.layout_file import read_layout
@@ -18,7 +18,7 @@ from fixture_design.io.layout_reading import layout_from_record, metres_of, tip_
 from fixture_design.io.plain_words import validated
 from fixture_design.io.problems import content_error
 from fixture_design.io.schema_key import require_schema
-from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, StemRecord, TaskRecord
+from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, PinsRecord, StemRecord, TaskRecord
 from fixture_design.io.task_rules import as_layout, task_problems
 from fixture_design.layout import Layout, Part, Pose, StemSizes
 
@@ -97,8 +97,14 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
         grid=None if rules.grid is None else Grid(point(rules.grid.origin), metres(rules.grid.pitch), rules.grid.plane),
         tip=tips[0],
         more_tips=tips[1:],
+        pins=None if rules.pins is None else _pins(rules.pins, metres),
         stem=_stem(rules.stem, metres),
     )
+
+
+def _pins(pins: PinsRecord, metres: Callable[[float], float]) -> PinRules:
+    low, high = pins.diameters
+    return PinRules(metres(pins.clearance), (metres(low), metres(high)))
 
 
 def _stem(stem: StemRecord | None, metres: Callable[[float], float]) -> StemSizes:

@@ -43,6 +43,16 @@ class StemRecord(Record):
     body_length: Positive | None = Field(None, description="of the body [length]")
 
 
+class PinsRecord(Record):
+    """Pins in holes and slots of the part: a round one and a diamond one, with three points on faces."""
+
+    WANTED: ClassVar[str] = "a mapping such as {clearance: 2.0e-5, diameters: [0.004, 0.02]}"
+    clearance: NotNegative = Field(description="between hole and pin, in diameter [length]")
+    diameters: Annotated[tuple[Positive, ...], Field(strict=False, min_length=2, max_length=2)] = Field(
+        description="of pins, from and to [length]"
+    )
+
+
 class CandidatesRecord(Record):
     """Where elements may touch the part; at most one of spacing, points and grid."""
 
@@ -62,6 +72,7 @@ class CandidatesRecord(Record):
         None, description="in place of `tip`: several, of which each new element has one"
     )
     stem: StemRecord | None = None
+    pins: PinsRecord | None = None
 
 
 class LimitsRecord(Record):

@@ -53,6 +53,12 @@ def _candidate_problems(candidates: CandidatesRecord, planar: bool) -> Iterator[
             yield Problem(path, "the box's first corner is not its lowest", f"{low} and {high}", "[lowest, highest]")
     for index, point in enumerate(candidates.points or ()):
         yield from _count_problems(point, ("candidates", "points", index), planar)
+    if candidates.pins is not None and planar:
+        yield Problem(("candidates", "pins"), "pins in holes are for spatial parts", expected="no `pins` here")
+    elif candidates.pins is not None and candidates.pins.diameters[0] > candidates.pins.diameters[1]:
+        path = ("candidates", "pins", "diameters")
+        found = f"[{candidates.pins.diameters[0]:g}, {candidates.pins.diameters[1]:g}]"
+        yield Problem(path, "'diameters' is out of order", found, "the smaller one first")
     if candidates.stem is not None and planar:
         yield Problem(("candidates", "stem"), "stems are spatial: elements stand upright beside a planar part")
     if candidates.tip is not None and candidates.tips is not None:

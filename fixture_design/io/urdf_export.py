@@ -1,8 +1,9 @@
 """A layout's elements as URDF: each a tip, a stem and a body that stand on the part's surface, for any simulator.
 
 The root link `fixture` is W. Each element is a link of its name at its contact, z along the part's outward normal: a
-ball whose lowest point touches, or a pad's plate, with a stem and a body (cylinders) further out. Their sizes are those
-of `layout.stem_of`, by which design keeps elements from cutting the part and each other.
+ball whose lowest point touches, or a pad's plate, with a stem and a body (cylinders) further out. Of a pin z runs
+against its axis, from its end to its stem. Sizes are those of `layout.stem_of` and `pin_stem`, by which design keeps
+elements from cutting the part and each other.
 """
 
 from __future__ import annotations
@@ -18,16 +19,19 @@ from fixture_design.errors import UnsupportedError
 from fixture_design.io.pose_angles import roll_pitch_yaw
 from fixture_design.io.text_file import write_text
 from fixture_design.layout import (
+    PIN_REACH,
     Column,
     Element,
     Layout,
     LineTip,
     PadTip,
+    PinTip,
     Pose,
     Stem,
     StemSizes,
     Verdict,
     element_name,
+    pin_stem,
     stem_of,
 )
 
@@ -53,7 +57,7 @@ def urdf_text(layout: Layout, verdict: Verdict, sizes: StemSizes | None = None) 
     for contact in verdict.contacts:
         contacts.setdefault(element_name(contact.name), contact)
     parts = [
-        _element(one, contacts[one.name], stem_of(one.tip, verdict.length, sizes))
+        _element(one, contacts[one.name], _stem(one, verdict.length, sizes))
         for one in layout.elements
         if one.name in contacts
     ]
@@ -70,8 +74,8 @@ def urdf_text(layout: Layout, verdict: Verdict, sizes: StemSizes | None = None) 
 
 
 def _element(element: Element, contact: Contact, stem: Stem) -> str:
-    normal = unit_normal(contact.normals[0])
-    # what touches in several points stands in its middle
+    # a pin stands behind its end; what touches in several points stands in its middle
+    normal = unit_normal(contact.normals[0]) if element.axis is None else -unit_normal(element.axis)
     pose = _upright(np.asarray(element.at) if stem.flat else contact.point, normal, _along(element))
     shapes = [_tip(element, stem), *(_cylinder(column) for column in stem.columns)]
     solids = "\n".join(
@@ -93,12 +97,19 @@ def _tip(element: Element, stem: Stem) -> tuple[str, float]:
     if isinstance(tip, PadTip | LineTip):
         width, height = (tip.width, tip.height) if isinstance(tip, PadTip) else (tip.length, stem.tip)
         return f'<box size="{width!r} {height!r} {stem.tip!r}"/>', stem.tip / 2
+    if isinstance(tip, PinTip):
+        return _cylinder(Column(-PIN_REACH * tip.diameter, stem.tip, tip.diameter / 2))
     return f'<sphere radius="{stem.tip!r}"/>', stem.tip
 
 
 def _cylinder(column: Column) -> tuple[str, float]:
     middle = (column.low + column.high) / 2
     return f'<cylinder radius="{column.radius!r}" length="{column.high - column.low!r}"/>', middle
+
+
+def _stem(element: Element, size: float, sizes: StemSizes | None) -> Stem:
+    tip = element.tip
+    return pin_stem(tip, size) if isinstance(tip, PinTip) else stem_of(tip, size, sizes)
 
 
 def _along(element: Element) -> Point | None:
