@@ -113,6 +113,12 @@ def in_the_way(task: Task, ways: Ways, problem: Problem, found: Found, verdict: 
     return hit if hit[new].any() else None
 
 
+def in_every_way(verdict: Verdict | None) -> set[str]:
+    """The elements that are in the way where every way out is blocked."""
+    use = None if verdict is None else _ways_out(verdict)
+    return set() if use is None or use.obstacle is None else {element_name(obstacle.name) for obstacle in use.tried}
+
+
 def _ways_out(verdict: Verdict) -> StraightWays | None:
     finding = verdict.groups["locators"].findings.get("loadable")
     return finding.use if finding is not None and isinstance(finding.use, StraightWays) else None

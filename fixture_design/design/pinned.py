@@ -70,7 +70,7 @@ def pinned_best_first(
     rules = task.candidates.pins
     assert rules is not None
     found: list[tuple[tuple[float, ...], Pinned]] = []
-    least = np.inf
+    least = float("inf")
     pairs, complete = _pairs(ways.holes(), rules, problem.limits.loading)
     for number, (first, second, out) in enumerate(pairs):
         if problem.cancelled():
@@ -81,7 +81,7 @@ def pinned_best_first(
         outcome = None if pinned is None else pinned.search(pinned.problem, seed, progress)
         if pinned is None or outcome is None or outcome.least_clamps is None:
             continue
-        least = min(least, outcome.least_clamps)
+        least = min(least, float(outcome.least_clamps))
         if outcome.found is not None:
             found.append((outcome.found.score(problem.objective), pinned))
     found.sort(key=lambda scored: scored[0])
