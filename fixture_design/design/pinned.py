@@ -23,7 +23,7 @@ from fixture_design.design.fitting import standing
 from fixture_design.design.found import Outcome
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import bounded_region
-from fixture_design.design.search import search_region
+from fixture_design.design.search import RESTARTS, search_region
 from fixture_design.design.task import PinRules, Task
 from fixture_design.design.ways import Hole, Progress, Ways
 from fixture_design.layout import Element, PinTip, pin_stem
@@ -31,6 +31,8 @@ from fixture_design.tolerances import COPLANAR_ANGLE
 
 #: Pairs of holes that are tried for each way out, widest first.
 MOST_PAIRS = 6
+#: Restarts by which pairs are compared; the best is searched with as many as any other way out.
+_GLANCES = 1
 #: Two holes whose axes are no further apart than this part of their diameter are one behind the other [-].
 _SAME_AXIS = 0.5
 #: A slot takes the turn if its walls are square to the line to the hole within this cosine [-].
@@ -49,10 +51,10 @@ class Pinned:
     out: Point
     holes: Mapping[str, str]
 
-    def search(self, problem: Problem, seed: int, progress: Progress) -> Outcome:
+    def search(self, problem: Problem, seed: int, restarts: int = RESTARTS) -> Outcome:
         """Of a problem like this one's, with its way out alone."""
         region = bounded_region(problem, self.out)
-        return search_region(problem, region, seed) if region is not None else Outcome(None, None, True)
+        return search_region(problem, region, seed, restarts) if region is not None else Outcome(None, None, True)
 
 
 #: Finds the best layout of a problem; its arguments are those of `search`.
@@ -78,7 +80,7 @@ def pinned_best_first(
             break
         progress(f"pins in {first.feature} and {second.feature}", number / len(pairs))
         pinned = _with_pins(task, ways, problem, (first, second), out, rules)
-        outcome = None if pinned is None else pinned.search(pinned.problem, seed, progress)
+        outcome = None if pinned is None else pinned.search(pinned.problem, seed, _GLANCES)
         if pinned is None or outcome is None or outcome.least_clamps is None:
             continue
         least = min(least, float(outcome.least_clamps))
@@ -90,7 +92,7 @@ def pinned_best_first(
 
 def _bounded_by(pinned: Pinned, least: float, complete: bool) -> Find:
     def again(problem: Problem, seed: int, progress: Progress) -> Outcome:
-        return replace(pinned.search(problem, seed, progress), least_clamps=int(least), complete=complete)
+        return replace(pinned.search(problem, seed), least_clamps=int(least), complete=complete)
 
     return again
 

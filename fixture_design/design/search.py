@@ -52,9 +52,9 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
     )
 
 
-def search_region(problem: Problem, region: Region, seed: int) -> Outcome:
+def search_region(problem: Problem, region: Region, seed: int, restarts: int = RESTARTS) -> Outcome:
     """The best layout of one region, with its bounds."""
-    best = _better_within(problem, region, np.random.default_rng(seed), None)
+    best = _better_within(problem, region, np.random.default_rng(seed), None, restarts)
     exact = None if best is None else _best_accuracy(problem, [region], len(best.clamps))
     return Outcome(best, region.bound, True, exact)
 
@@ -73,9 +73,11 @@ def _whatever_closes(problem: Problem, seed: int) -> Outcome:
     return Outcome(Found(locators, clamps, None, accuracy(problem, locators), margin), 0, True, None, least)
 
 
-def _better_within(problem: Problem, region: Region, rng: np.random.Generator, best: Found | None) -> Found | None:
+def _better_within(
+    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, restarts: int = RESTARTS
+) -> Found | None:
     """The best of one region, or ``best`` if that is better."""
-    for _ in range(RESTARTS):
+    for _ in range(restarts):
         if problem.cancelled():
             break
         for locators, clamps in _sets(problem, region, rng, best):
