@@ -82,10 +82,10 @@ class PartSurface:
         return Scale(center, self.geometry.half_diagonal)
 
     def contacts(self, layout: Layout) -> Sequence[Contact]:
-        return contacts_of(layout).contacts
+        return contacts_of(layout, self.geometry).contacts
 
     def verify(self, layout: Layout) -> Verdict:
-        return verify(layout)
+        return verify(layout, found=contacts_of(layout, self.geometry))
 
     def touching(self, elements: Sequence[Element]) -> Sequence[Sequence[Contact]]:
         """The contacts that each element has by itself, without friction; none where it cannot stand."""
