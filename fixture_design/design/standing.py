@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -69,16 +70,27 @@ class Standing:
                 return place, place + 1 + int(later[0])
         return None
 
+    @cached_property
+    def _around(self) -> tuple[Points, Weights]:
+        """A ball around each element: its middle, and its radius; -inf around what is in nobody's way."""
+        middles = self.starts[:, 0] + (self.starts[:, 1] + self.ways[:, 1] - self.starts[:, 0]) / 2
+        reach = np.linalg.norm(self.starts[:, 0] - middles, axis=1) + self.radii.max(axis=1)
+        return middles, reach
+
     def _beside(self, index: int) -> Mask:
-        free = np.ones(len(self.radii), dtype=bool)
+        middles, reach = self._around
+        near = np.flatnonzero(np.linalg.norm(middles - middles[index], axis=1) < reach + reach[index])
+        free = np.ones(len(near), dtype=bool)
         for mine in range(2):
             for other in range(2):
                 away = segment_distances(
-                    self.starts[index, mine], self.ways[index, mine], self.starts[:, other], self.ways[:, other]
+                    self.starts[index, mine], self.ways[index, mine], self.starts[near, other], self.ways[near, other]
                 )
-                free &= away >= self.radii[index, mine] + self.radii[:, other]
-        free[index] = True
-        return free
+                free &= away >= self.radii[index, mine] + self.radii[near, other]
+        beside = np.ones(len(self.radii), dtype=bool)
+        beside[near[~free]] = False
+        beside[index] = True
+        return beside
 
 
 def _capsules(stem: Stem) -> list[tuple[float, float, float]]:

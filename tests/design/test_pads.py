@@ -137,6 +137,15 @@ def test_a_real_part_on_a_plane_a_line_and_a_point() -> None:
     assert ranks(result) == (6, 6)
 
 
+def test_flat_tips_close_a_plate_whose_chamfers_nearly_close_it() -> None:
+    """A cut there was once made empty by a motion that is free up to rounding only."""
+    size = 0.018
+    solid = part(shared("trimesh/models/plate_holes.STL"), 0.001)
+    result = designed(solid, PadTip(size, size, X), LineTip(size, X), PointTip())
+    assert kinds(result, "locator") == ["LineTip", "PadTip", "PointTip"]
+    assert result.reason is None  # without friction
+
+
 def test_a_moved_box_keeps_its_plane_line_and_point(solid: Part) -> None:
     pose = Pose.from_xyz_rpy(np.array([0.3, -0.2, 0.1]), np.array([0.4, -0.3, 1.1]))
     moved = Part(solid.name, "mesh", solid.file, None, 1.0, pose)
