@@ -45,4 +45,6 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
             reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
             return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
     reason = f"no layout was found; at least {bound.locators} locators and {bound.clamps} clamps are needed"
+    if problem.standing is not None:
+        reason += ", with stems and bodies out of each other's way"
     return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from fixture_design.design import Objective
 from fixture_design.io.record_types import Coordinates, Friction, NotNegative, Positive, Record, Text
-from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField
+from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField, or_point
 from fixture_design.layout import Space
 
 TASK_SCHEMA = "fixture_design/task/1"
@@ -67,10 +67,11 @@ class CandidatesRecord(Record):
         None, description="candidates, in W [length]"
     )
     grid: GridRecord | None = None
-    tip: TipField = Field(None, description="of new elements, default: point")
-    tips: Annotated[tuple[TipField, ...], Field(strict=False, min_length=1)] | None = Field(
-        None, description="in place of `tip`: several, of which each new element has one"
-    )
+    tip: TipField = Field(None, description="of new elements, default: point", json_schema_extra=or_point)
+    tips: (
+        Annotated[tuple[Annotated[TipField, Field(json_schema_extra=or_point)], ...], Field(strict=False, min_length=1)]
+        | None
+    ) = Field(None, description="in place of `tip`: several, of which each new element has one")
     stem: StemRecord | None = None
     pins: PinsRecord | None = None
 
