@@ -11,8 +11,8 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > batch > viewing > io > design > assembly > verification > geometry | analysis > layout > contacts > cones
-        > arrays | errors | tolerances
+    cli > batch > viewing > io > design | recognition > assembly > verification > geometry | analysis > layout
+        > contacts > cones > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
@@ -33,6 +33,7 @@ The folders state the theory, and each imports only from those to its right::
 * `assembly`: which contacts two parts can have and which can follow which: the contact state graph.
 * `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
+* `recognition`: contact states from measured forces and displacements: measurement sets, discriminants, classifier.
 * `io`: files. `viewing`: evidence in words, the sheet to sign. `batch`: thousands of layouts in worker processes.
   `cli`: the command line.
 
@@ -65,67 +66,85 @@ if TYPE_CHECKING:
     from fixture_design.batch import verify_batch
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
-    from fixture_design.design import DesignResult, Task, design
+    from fixture_design.design import DesignResult, Task, design, repair
     from fixture_design.io import (
         read_assembly,
+        read_classifier,
         read_graph,
         read_layout,
+        read_log,
         read_task,
         task_of_part,
+        write_classifier,
         write_graph,
         write_layout,
     )
     from fixture_design.layout import Layout, Verdict
+    from fixture_design.recognition import Classifier, Recogniser, build_classifier
     from fixture_design.verification import check, contacts_of, verify
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
     "Assembly": "assembly",
+    "Classifier": "recognition",
     "Contact": "contacts",
     "ContactStateGraph": "assembly",
     "DesignResult": "design",
     "Layout": "layout",
     "PolyhedralConvexCone": "cones",
+    "Recogniser": "recognition",
     "Task": "design",
     "Verdict": "layout",
+    "build_classifier": "recognition",
     "check": "verification",
     "contacts_of": "verification",
     "design": "design",
     "read_assembly": "io",
+    "read_classifier": "io",
     "read_graph": "io",
     "read_layout": "io",
+    "read_log": "io",
     "read_task": "io",
+    "repair": "design",
     "state_at": "assembly",
     "state_graph": "assembly",
     "task_of_part": "io",
     "verify": "verification",
     "verify_batch": "batch",
+    "write_classifier": "io",
     "write_graph": "io",
     "write_layout": "io",
 }
 
 __all__ = [
     "Assembly",
+    "Classifier",
     "Contact",
     "ContactStateGraph",
     "DesignResult",
     "Layout",
     "PolyhedralConvexCone",
+    "Recogniser",
     "Task",
     "Verdict",
     "__version__",
+    "build_classifier",
     "check",
     "contacts_of",
     "design",
     "read_assembly",
+    "read_classifier",
     "read_graph",
     "read_layout",
+    "read_log",
     "read_task",
+    "repair",
     "state_at",
     "state_graph",
     "task_of_part",
     "verify",
     "verify_batch",
+    "write_classifier",
     "write_graph",
     "write_layout",
 ]

@@ -89,7 +89,7 @@ LOAD_TIE = 1e-6
 CARRIES = 1e-6
 
 #: Forces at the limit of friction that leave no more than this were found [-]; what is proved leaves less.
-SOLVED = 1e-8
+FORCES_SOLVED = 1e-8
 
 #: Branches of alternatives that are looked at for forces; with more, what the first leave open is undecided.
 MOST_FORCE_BRANCHES = 64

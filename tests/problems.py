@@ -245,3 +245,47 @@ FIGURE_14_TABLE_5_CONTACTS: dict[str, tuple[str, ...]] = {
     "N3": ("facet 2 - apex 1",),
     "N4": ("apex 4 - facet 7", "facet 2 - apex 1"),
 }
+
+#: Table 6: face vectors of the measurement sets, N2 to N4 one cone for all of Table 5's samples; scaled to a largest
+#: component of 1, in the order in which Table 7 drops them.
+FIGURE_14_TABLE_6: dict[str, tuple[Numbers, ...]] = {
+    "N1": ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, -1), (0, -1, 0), (-1, 0, 0)),
+    "N2": ((1, 0, 0), (-1, 0, 0), (0, -0.04644, -1), (0, 0.998377, 1)),
+    "N3": (
+        (-0.30396, 1, -0.068729),
+        (1, 0.592024, 0.260282),
+        (1, -0.610791, -0.248616),
+        (1, -0.804673, -0.44315),
+        (-0.142827, 0.102581, -1),
+    ),
+    "N4": (
+        (-1, -0.138369, -0.377961),
+        (-1, -0.287817, -0.417221),
+        (-0.895973, -1, -0.60046),
+        (-1, -0.755479, -0.550071),
+        (-1, 0.67478, -0.195623),
+        (-1, 0.036819, -0.337039),
+        (-1, -0.012028, -0.348241),
+        (-0.663462, 1, -0.092698),
+        (-0.319406, -1, -0.428551),
+        (0, 1, 0),
+        (-1, -0.400926, -0.448018),
+        (0.019246, 1, 0.071721),
+    ),
+}
+
+#: Table 6 from Table 5: how far its face vectors are from those computed here. Table 5 has five or six digits, and the
+#: two contacts of N4 are nearly opposed.
+FIGURE_14_TABLE_6_ROUNDING: dict[str, float] = {"N2": 1e-5, "N3": 1e-5, "N4": 3.1e-3}
+
+#: T_i of section 4.7, and Table 7: the faces of S_j that detect a transition from N_i to N_j.
+FIGURE_14_SUCCESSORS: dict[str, tuple[str, ...]] = {"N1": ("N1", "N2", "N3"), "N2": ("N2", "N3"), "N3": ("N3", "N4")}
+FIGURE_14_TABLE_7: dict[tuple[str, str], tuple[Numbers, ...]] = {
+    ("N1", "N1"): ((-1, 0, 0), (0, -1, 0)),
+    ("N1", "N2"): ((-1, 0, 0),),
+    ("N1", "N3"): ((1, -0.804673, -0.44315),),
+    ("N2", "N2"): ((-1, 0, 0),),
+    ("N2", "N3"): ((1, -0.804673, -0.44315),),
+    ("N3", "N3"): ((1, 0.592024, 0.260282), (1, -0.610791, -0.248616)),
+    ("N3", "N4"): tuple(row for row in FIGURE_14_TABLE_6["N4"] if row != (0, 1, 0)),
+}

@@ -10,7 +10,7 @@ from fixture_design.analysis import loads as one_at_a_time
 from fixture_design.arrays import Mask, Rows, Vector, Weights
 from fixture_design.cones import second_order
 from fixture_design.cones.force_cones import ForceCones
-from fixture_design.tolerances import SOLVED
+from fixture_design.tolerances import FORCES_SOLVED
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def _open(table: FactorTable) -> Mask:
     """Brackets that are wider than what is asked of the solver."""
     with np.errstate(invalid="ignore"):
         width = table.upper - table.lower
-    narrow = np.isfinite(width) & (width <= SOLVED * (1 + np.abs(table.upper)))
+    narrow = np.isfinite(width) & (width <= FORCES_SOLVED * (1 + np.abs(table.upper)))
     return (table.upper != table.lower) & ~narrow
 
 

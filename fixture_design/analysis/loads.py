@@ -19,7 +19,7 @@ import numpy as np
 from fixture_design.analysis.balances import repaired_forces, repaired_motion, surplus
 from fixture_design.arrays import Weights
 from fixture_design.cones.force_cones import ForceCones
-from fixture_design.tolerances import CARRIES, SOLVED, WITNESS
+from fixture_design.tolerances import CARRIES, FORCES_SOLVED, WITNESS
 
 #: What Clarabel is asked for [-]; it stops sooner where it gets no further.
 _SOLVER_TOLERANCE = 1e-12
@@ -138,7 +138,7 @@ def _largest_factor(cones: ForceCones, fixed: Weights, load: Weights) -> tuple[f
     upper = np.inf if motion is None else -surplus(cones, motion, fixed)
     x, left = repaired_forces(cones, fixed + solved.y[0] * load, solved.x)
     # where friction is at its limit nothing has room, and the forces stay as they were found
-    if motion is not None and solved.found and left <= SOLVED:
+    if motion is not None and solved.found and left <= FORCES_SOLVED:
         return min(float(solved.y[0]), upper), upper, x, motion
     return _unusual(cones, fixed, load, upper, motion)
 
@@ -162,7 +162,7 @@ def _unusual(
         for factor in (upper, 0.0) if some.y[0] < 0 < upper else (upper,):
             there = nearest_forces(cones, fixed + factor * load).x
             there, left = repaired_forces(cones, fixed + factor * load, there)
-            if left <= SOLVED:
+            if left <= FORCES_SOLVED:
                 return factor, upper, there, none
     return float(some.y[0]), upper, x, none
 

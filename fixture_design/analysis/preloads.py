@@ -20,7 +20,7 @@ from fixture_design.arrays import Vector, Weights
 from fixture_design.cones.force_cones import ForceCones
 from fixture_design.contacts import Contact
 from fixture_design.layout import Answer, element_name
-from fixture_design.tolerances import LOAD_TIE, SOLVED, ZERO_ROW, Tolerances
+from fixture_design.tolerances import FORCES_SOLVED, LOAD_TIE, ZERO_ROW, Tolerances
 
 #: How much further than they go the loads are taken, one after the other until the preloads found are verified [-].
 MARGINS = (1e-4, 1e-3, 1e-2)
@@ -126,7 +126,7 @@ def _program(
     if not solved.found:
         return None
     # rounded up a little, and what is nothing but rounding down to nothing
-    wanted = np.where(solved.y > SOLVED, solved.y * (1 + LOAD_TIE), 0.0)
+    wanted = np.where(solved.y > FORCES_SOLVED, solved.y * (1 + LOAD_TIE), 0.0)
     values = np.clip(wanted, low, high) * unit
     return {name: float(value) for name, value in zip(names, values, strict=True)}
 

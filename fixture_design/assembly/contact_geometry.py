@@ -64,6 +64,14 @@ class ContactGeometry(Protocol):
         """Contact equations of chosen pairs; q of shape (n, c), chosen of shape (n, m) or (1, m)."""
         ...
 
+    def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        """From the moving body's origin to the contact points of chosen pairs, fixed axes, (n, m, 2 or 3) [m]."""
+        ...
+
+    def rotations(self, q: np.ndarray) -> np.ndarray:
+        """Rotation matrices from the moving body's axes to fixed ones, shape (n, 2, 2) or (n, 3, 3)."""
+        ...
+
     def reach(self, q: np.ndarray) -> np.ndarray:
         """Levers (n, P): turning by an angle changes a pair's distance by at most lever times angle [m]."""
         ...

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from fixture_design.analysis.hybrid_control import HybridControl, hybrid_control
-from fixture_design.arrays import ArrayLike
+from fixture_design.arrays import ArrayLike, Vector
 from fixture_design.assembly.assembly import Assembly
 from fixture_design.assembly.planar import PlanarGeometry
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone
@@ -29,8 +29,16 @@ def contacts_at(assembly: Assembly, configuration: ArrayLike) -> tuple[Contact, 
     """
     if assembly.space != "planar":
         raise UnsupportedError("contacts of states are for planar assemblies so far", source=assembly.source)
-    geometry = PlanarGeometry.of(assembly)
-    q = np.asarray(configuration, dtype=np.float64)[None]
+    return planar_contacts(PlanarGeometry.of(assembly), np.asarray(configuration, dtype=np.float64))
+
+
+def planar_contacts(geometry: PlanarGeometry, configuration: Vector) -> tuple[Contact, ...]:
+    """As `contacts_at`, for a geometry that is there already.
+
+    Raises:
+        AssemblyError: the parts overlap there.
+    """
+    q = configuration[None]
     near = TOUCHING * geometry.size
     if geometry.overlap(q)[0] > near:
         raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")

@@ -70,6 +70,14 @@ class PlanarGeometry:
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(q, chosen)
 
+    def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        chosen = np.broadcast_to(chosen, (len(q), chosen.shape[1]))
+        return np.take_along_axis(self.pairs.arms(q), chosen[..., None], axis=1)
+
+    def rotations(self, q: np.ndarray) -> np.ndarray:
+        c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
+        return np.moveaxis(np.array([[c, -s], [s, c]]), -1, 0)
+
     def reach(self, q: np.ndarray) -> np.ndarray:
         return np.linalg.norm(self.pairs.arms(q), axis=-1)
 

@@ -72,6 +72,12 @@ class SpatialGeometry:
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(rotations.matrices(q[:, 3:]), q[:, :3], chosen)
 
+    def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        return self.pairs.arms(rotations.matrices(q[:, 3:]), q[:, :3], chosen)
+
+    def rotations(self, q: np.ndarray) -> np.ndarray:
+        return rotations.matrices(q[:, 3:])
+
     def reach(self, q: np.ndarray) -> np.ndarray:
         return self.pairs.levers(q[:, :3])
 

@@ -57,6 +57,10 @@ class FacetPairs:
             return np.broadcast_to(np.linalg.norm(self.apices, axis=1), (len(position), len(self.apices)))
         return np.linalg.norm(self.apices[None] - position[:, None], axis=-1)
 
+    def arms(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        """From the moving body's origin to the apices, fixed axes, shape (n, m, 3) [m]."""
+        return self._seen(R, position, chosen)[1]
+
     def _seen(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """The apices in the facets' frame, from the moving body's origin in fixed axes, and how a motion counts."""
         if self.apex_moves:
@@ -126,6 +130,16 @@ class EdgePairs:
         over = [np.maximum(-share, share - 1) * length for share, length in zip(shares, lengths, strict=True)]
         return np.maximum(*over)
 
+    def arms(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        """From the moving body's origin to the points of the moving edges next to the fixed ones, (n, m, 3) [m]."""
+        ends = np.einsum("nij,nmej->nmei", R, self.mine[chosen])
+        t, s = ends[..., 1, :] - ends[..., 0, :], self.theirs[chosen][..., 1, :] - self.theirs[chosen][..., 0, :]
+        away = ends[..., 0, :] + position[:, None] - self.theirs[chosen][..., 0, :]
+        tt, ss, ts = _dot(t, t), _dot(s, s), _dot(t, s)
+        squared = np.maximum(tt * ss - ts**2, PARALLEL**2 * tt * ss)
+        share = (ts * _dot(s, away) - ss * _dot(t, away)) / squared
+        return ends[..., 0, :] + t * np.clip(share, 0.0, 1.0)[..., None]
+
     def levers(self, position: np.ndarray) -> np.ndarray:
         longest = np.linalg.norm(self.mine, axis=-1).max(axis=1)
         return np.broadcast_to(longest, (len(position), len(longest)))
@@ -159,6 +173,17 @@ class SpatialPairs:
             values[:, columns] = np.where(here[..., None], found[0], values[:, columns])
             gradients[:, columns] = np.where(here[..., None, None], found[1], gradients[:, columns])
         return PairEquations(values, gradients)
+
+    def arms(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        """From the moving body's origin to the contact points of chosen pairs (n, m), fixed axes, (n, m, 3) [m]."""
+        chosen = np.broadcast_to(chosen, (len(R), chosen.shape[1]))
+        arms = np.zeros((*chosen.shape, 3))
+        for group, start, size in zip(self.groups, self._starts(), self.sizes.tolist(), strict=True):
+            inside = (chosen >= start) & (chosen < start + size)
+            if inside.any():
+                found = group.arms(R, position, np.clip(chosen - start, 0, size - 1))
+                arms = np.where(inside[..., None], found, arms)
+        return arms
 
     def beyond(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
         """How far apices are beyond rims and crossings beyond ends, not positive within, shape (n, P) [m]."""

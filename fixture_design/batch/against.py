@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +13,10 @@ from fixture_design.batch.outcome import OUTCOMES, outcome_of, required_margins
 from fixture_design.batch.records import Record
 from fixture_design.batch.results import key_of, records_in
 from fixture_design.errors import FileFormatError
+from fixture_design.tolerances import DEFAULT
 
-#: Margins that are smaller by this part of what they were are said to be lost [-]: less is rounding, or nobody's worry.
+#: Margins that are smaller by this part of what they were, and by more than ties are apart, are said to be lost [-]:
+#: less is rounding, or nobody's worry.
 LOST = 0.01
 
 
@@ -47,60 +51,80 @@ class Comparison:
     gone: list[str] = field(default_factory=list)
     same: int = 0
 
+    def add(self, now: _Known, was: _Known) -> None:
+        """A layout that is in both."""
+        self.same += 1
+        if now.outcome != was.outcome:
+            self.changed.append(Change(now.name, now.source, "verdict", was.outcome, now.outcome))
+        self.lost += _losses(now, was.margins)
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON."""
         lists = {key: [vars(change) for change in getattr(self, key)] for key in ("changed", "lost")}
         return {**lists, "new": self.new, "gone": self.gone, "same": self.same}
 
 
-class _Earlier:
-    """The layouts of an earlier output, to be found again once each: by source and name, or by one that tells."""
+@dataclass(frozen=True)
+class _Known:
+    """What is compared of one layout."""
 
-    def __init__(self, path: Path) -> None:
-        self._left: dict[int, tuple[str, str, tuple[tuple[str, float | None], ...]]] = {}
-        self._numbers: dict[tuple[str | None, str | None], list[int]] = {}
-        for number, record in enumerate(records_in(path)):
-            source, name = key_of(record)
-            self._left[number] = (name, outcome_of(record), tuple(required_margins(record)))
-            for key in ((source, name), (None, name), (source, None)):
-                self._numbers.setdefault(key, []).append(number)
+    source: str
+    name: str
+    outcome: str
+    margins: tuple[tuple[str, float | None], ...]
 
-    def take(self, record: Record) -> tuple[str, tuple[tuple[str, float | None], ...]] | None:
-        """Outcome and margins that a layout had; a library may have moved, and a broken layout has lost its name."""
+    @classmethod
+    def of(cls, record: Record) -> _Known:
         source, name = key_of(record)
-        for key in ((source, name), (None, name), (source, None)):
-            numbers = self._numbers.get(key, [])
-            if len(numbers) > 1 and None in key:
-                continue
-            number = next((number for number in numbers if number in self._left), None)
-            if number is not None:
-                return self._left.pop(number)[1:]
-        return None
+        return cls(source, name, outcome_of(record), tuple(required_margins(record)))
 
-    @property
-    def left(self) -> list[str]:
-        """Names of those that were not found again."""
-        return [name for name, _, _ in self._left.values()]
+
+class _Waiting:
+    """Layouts of one of the outputs that were not met in the other one yet, in order."""
+
+    def __init__(self) -> None:
+        self._by_key: dict[tuple[str, str], deque[_Known]] = {}
+
+    def put(self, known: _Known) -> None:
+        self._by_key.setdefault((known.source, known.name), deque()).append(known)
+
+    def take(self, like: _Known) -> _Known | None:
+        """The first one of this source and name."""
+        key = like.source, like.name
+        if key not in self._by_key:
+            return None
+        found = self._by_key[key].popleft()
+        if not self._by_key[key]:
+            del self._by_key[key]
+        return found
+
+    def all(self) -> list[_Known]:
+        return [known for some in self._by_key.values() for known in some]
 
 
 def compare(new: Path, old: Path) -> Comparison:
     """What the output ``new`` says otherwise than the output ``old``.
 
+    Both are read side by side: what waits to be met again is few where the library kept its order.
+
     Raises:
         FileFormatError: a file cannot be read, or they have no layout in common.
     """
-    earlier, found = _Earlier(old), Comparison()
-    for record in records_in(new):
-        was = earlier.take(record)
-        if was is None:
-            found.new.append(record["name"])
-            continue
-        found.same += 1
-        outcome, margins = was
-        if outcome_of(record) != outcome:
-            found.changed.append(_change(record, "verdict", outcome, outcome_of(record)))
-        found.lost += _losses(record, margins)
-    found.gone = earlier.left
+    found, later, earlier = Comparison(), _Waiting(), _Waiting()
+    for record, was in zip_longest(records_in(new), records_in(old)):
+        if was is not None:
+            known = _Known.of(was)
+            if (now := later.take(known)) is not None:
+                found.add(now, known)
+            else:
+                earlier.put(known)
+        if record is not None:
+            known = _Known.of(record)
+            if (before := earlier.take(known)) is not None:
+                found.add(known, before)
+            else:
+                later.put(known)
+    _meet_moved(found, later.all(), earlier.all())
     if not found.same and (found.new or found.gone):
         raise FileFormatError(
             "no layout of this batch is among these records, by source or name", source=old,
@@ -111,14 +135,29 @@ def compare(new: Path, old: Path) -> Comparison:
     return found
 
 
-def _losses(record: Record, before: Iterable[tuple[str, float | None]]) -> Iterator[Change]:
+def _meet_moved(found: Comparison, new: list[_Known], old: list[_Known]) -> None:
+    """A library may have moved, and a broken layout has lost its name: one of the two tells where only one has it."""
+    for key in ("name", "source"):
+        mine, theirs = _by(new, key), _by(old, key)
+        pairs = [(mine[word][0], theirs[word][0]) for word in mine if len(mine[word]) == len(theirs.get(word, ())) == 1]
+        for one, other in pairs:
+            found.add(one, other)
+        met = {id(known) for pair in pairs for known in pair}
+        new, old = ([known for known in some if id(known) not in met] for some in (new, old))
+    found.new += [known.name for known in new]
+    found.gone += [known.name for known in old]
+
+
+def _by(some: Iterable[_Known], key: str) -> dict[str, list[_Known]]:
+    found: dict[str, list[_Known]] = {}
+    for known in some:
+        found.setdefault(getattr(known, key), []).append(known)
+    return found
+
+
+def _losses(known: _Known, before: Iterable[tuple[str, float | None]]) -> Iterator[Change]:
     were = dict(before)
-    for what, margin in required_margins(record):
+    for what, margin in known.margins:
         was = were.get(what)
-        if was is not None and margin is not None and was - margin > LOST * abs(was):
-            yield _change(record, what, was, margin)
-
-
-def _change(record: Record, what: str, before: str | float, after: str | float) -> Change:
-    source, name = key_of(record)
-    return Change(name, source, what, before, after)
+        if was is not None and margin is not None and was - margin > max(LOST * abs(was), DEFAULT.tie):
+            yield Change(known.name, known.source, what, was, margin)

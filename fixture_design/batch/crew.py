@@ -2,7 +2,8 @@
 
 A chunk of items goes to an idle worker, which sends back entries as they become known. If the worker dies, what it sent
 counts, and the rest is looked at again item by item; an item on which a worker dies twice, alone, has the error as its
-record. An item that takes too long has its worker killed, and the error as its record.
+record. A worker that says nothing for longer than one item may take is killed; what it had left is looked at again
+likewise, and an item that takes too long alone has the error as its record.
 """
 
 from __future__ import annotations
@@ -204,10 +205,11 @@ class Crew:
             task = worker.task
             if task is None or not worker.left or monotonic() - worker.heard <= self._limit:
                 continue
-            late, *others = worker.left  # a worker goes through its chunk in order
-            number, item = task.numbered[late]
-            self._fail(number, item, TimeLimitError(f"it took longer than the {self._limit:g} s it was given"))
-            self._again.extend(_Task([task.numbered[place]]) for place in others)
+            if len(task.numbered) == 1:
+                number, item = task.numbered[0]
+                self._fail(number, item, TimeLimitError(f"it took longer than the {self._limit:g} s it was given"))
+            else:  # which of them it is nobody knows: some are decided together
+                self._again.extend(_Task([task.numbered[place]]) for place in worker.left)
             self._kill(worker)
             self._workers.remove(worker)
 

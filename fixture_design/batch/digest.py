@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 from fixture_design.batch.item import Item
@@ -44,10 +45,12 @@ def files_named(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
 
 
 def file_hash(file: Path) -> str:
-    """SHA-256 of a file and of the meshes that it names if it is a URDF; "missing" if it cannot be read."""
+    """SHA-256 of a file and of the meshes that it names if it is a URDF; "missing" if it is none, or cannot be read."""
     try:
         status = file.stat()
     except (OSError, ValueError):
+        return "missing"
+    if not S_ISREG(status.st_mode):  # a pipe would be waited for
         return "missing"
     return _hash_of(file, status.st_mtime_ns, status.st_size)
 

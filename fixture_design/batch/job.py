@@ -14,6 +14,7 @@ from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.items import items_of
 from fixture_design.batch.output import Output
 from fixture_design.batch.records import Detail, record_of
+from fixture_design.batch.retry import look_again
 from fixture_design.batch.summary import Summary
 from fixture_design.batch.worker import LookAt, verifying
 from fixture_design.errors import InputError
@@ -98,6 +99,7 @@ def run_batch(
     detail: Detail = "full",
     watch: Watcher = lambda some: None,
     ready: Callable[[], None] = lambda: None,
+    retry: bool = False,
     stop: Callable[[], bool] = lambda: False,
 ) -> Summary:
     """Appends the records of all layouts that have none yet to a file.
@@ -106,6 +108,7 @@ def run_batch(
         files: as `input_files` gives them.  workers: are closed at the end.
         watch: told of every record, those that were there first.
         ready: called between those and the new ones.
+        retry: look again at layouts whose records are errors; their records are replaced.
         stop: asked again and again whether to end here; what is known by then is written.
 
     Raises:
@@ -119,8 +122,10 @@ def run_batch(
         watch(some)
 
     with closing(workers), closing(Output(output, files)) as out:
+        if retry:
+            summary.retried = look_again(out, files, detail, workers, stop)
         items = items_of(files)
-        for done in out.done(items, detail):
+        for done in out.done(items, detail, mended=retry and stop()):
             add([done])
         summary.resumed = summary.count
         ready()

@@ -9,6 +9,10 @@ from fixture_design.errors import InputError
 
 #: Outcomes of one layout, the worst first; "nothing required" is satisfied as "yes" is.
 OUTCOMES = ("internal error", "bad input", "no", "undecided", "nothing required", "yes")
+#: The requirement whose margin may be 0 where all is well.
+_SLIDES = ": loadable"
+#: Outcomes of layouts that have no verdict.
+FAILURES = frozenset({"internal error", "bad input"})
 
 
 def outcome_of(record: dict[str, Any]) -> str:
@@ -19,8 +23,12 @@ def outcome_of(record: dict[str, Any]) -> str:
 
 
 def smallest_margin(record: dict[str, Any]) -> float | None:
-    """The smallest margin of the findings that are required; None where none is known."""
-    margins = [margin for _, margin in required_margins(record) if margin is not None]
+    """The smallest margin of the findings that are required; None where none is known.
+
+    That of a straight way out does not count where there is one: it is 0 where the part slides along locators, which is
+    as good as leaving them.
+    """
+    margins = [m for what, m in required_margins(record) if m is not None and not (what.endswith(_SLIDES) and m >= 0)]
     return min(margins, default=None)
 
 

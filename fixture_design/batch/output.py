@@ -1,4 +1,4 @@
-"""The output of a batch: one record a line, only ever appended to, so that what was done stays done.
+"""The output of a batch: one record a line, appended to, so that what was done stays done.
 
 A run that was killed leaves at most a last line that is cut short: that one is removed. Every line that is there must
 be the record of the layout that now is in its place, of the same text and files, version and tolerances; if one is not,
@@ -8,7 +8,8 @@ the file holds the results of something else, and is left alone.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -49,14 +50,17 @@ class Output:
         except OSError as cause:
             raise FileFormatError(f"the output cannot be written: {cause.strerror or cause}", source=path) from cause
         try:
-            self._lock()
+            _lock(self._file, path)
             self._cut()
         except BaseException:
             self._file.close()
             raise
 
-    def done(self, items: Iterator[Item], detail: Detail) -> Iterator[tuple[Item, Entry]]:
+    def done(self, items: Iterator[Item], detail: Detail, mended: bool = False) -> Iterator[tuple[Item, Entry]]:
         """The items whose records are there, with these; ``items`` goes on behind them.
+
+        Args:
+            mended: whether a layout whose record is an error may be another one by now.
 
         Raises:
             FileFormatError: a record is that of something else.
@@ -70,7 +74,9 @@ class Output:
                 raise FileFormatError("the output has a line that is no record", source=self.path, place=place,
                                       expected=_ELSEWHERE) from cause  # fmt: skip
             item = next(items, None)
-            problem = "there are more records than layouts" if item is None else _difference(record, item, detail)
+            problem = (
+                "there are more records than layouts" if item is None else _difference(record, item, detail, mended)
+            )
             if item is None or problem is not None:
                 raise FileFormatError(f"the output holds results of something else: {problem}", source=self.path,
                                       place=place, expected=_ELSEWHERE)  # fmt: skip
@@ -89,23 +95,40 @@ class Output:
             problem = f"the output cannot be written: {cause.strerror or cause}"
             raise FileFormatError(problem, source=self.path) from cause
 
+    def replace(self, lines: Mapping[int, bytes]) -> None:
+        """Puts lines in the places of others, counted from 0: in a new file, which takes this one's place at once.
+
+        Raises:
+            FileFormatError: the disk is full, or the folder is not permitted.
+        """
+        target = Path(os.path.realpath(self.path))
+        new = target.with_name(f".{target.name}.{os.getpid()}.new")
+        try:
+            with ExitStack() as undo:
+                new.unlink(missing_ok=True)
+                file = new.open("a+b")
+                undo.callback(new.unlink, missing_ok=True)
+                undo.callback(file.close)
+                _lock(file, self.path)
+                self._file.seek(0)
+                file.writelines(lines.get(place, line) for place, line in enumerate(self._file))
+                file.flush()
+                os.fsync(file.fileno())
+                os.chmod(new, target.stat().st_mode & 0o777)
+                os.replace(new, target)
+                undo.pop_all()
+        except OSError as cause:
+            problem = f"the output cannot be replaced: {cause.strerror or cause}"
+            raise FileFormatError(problem, source=self.path) from cause
+        self._file.close()
+        self._file = file
+
     def close(self) -> None:
         """Everything is on disk then, where the file is on one."""
         if not self._file.closed:
             self._file.flush()
             os.fsync(self._file.fileno())
             self._file.close()
-
-    def _lock(self) -> None:
-        """Two batches that append to one file would spoil it; the lock goes with the process."""
-        try:
-            import fcntl  # noqa: PLC0415 - not on Windows, whose files are not locked
-        except ImportError:
-            return
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as cause:
-            raise FileFormatError("another batch is writing this output", source=self.path) from cause
 
     def _cut(self) -> None:
         """Removes the last line if it is cut short, and looks whether the file can be one of ours."""
@@ -116,6 +139,18 @@ class Output:
         end = _end_of_last_line(self._file)
         if end < self._file.seek(0, os.SEEK_END):
             self._file.truncate(end)
+
+
+def _lock(file: BinaryIO, path: Path) -> None:
+    """Two batches that append to one file would spoil it; the lock goes with the process."""
+    try:
+        import fcntl  # noqa: PLC0415 - not on Windows, whose files are not locked
+    except ImportError:
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as cause:
+        raise FileFormatError("another batch is writing this output", source=path) from cause
 
 
 def _end_of_last_line(file: BinaryIO, step: int = 1 << 20) -> int:
@@ -131,19 +166,22 @@ def _end_of_last_line(file: BinaryIO, step: int = 1 << 20) -> int:
     return 0
 
 
-def _difference(record: dict[str, Any], item: Item, detail: Detail) -> str | None:
+def _difference(record: dict[str, Any], item: Item, detail: Detail, mended: bool) -> str | None:
     """Why a record is not that of an item as it is now; None if it is."""
     if record.get("source") != item.source:
         return f"of {record.get('source')!r}, where {item.source!r} would be"
-    run = record.get("run", {})
-    if "error" in record or not isinstance(run, dict):
-        return None if "error" in record else "it has no `run`"
+    if mended and "error" in record:
+        return None
+    run, failed = record.get("run"), "error" in record
+    if not isinstance(run, dict):
+        return "it has no `run`"
     if run.get("version") != VERSION:
         return f"of version {run.get('version')}; this is {VERSION}"
-    if run.get("tolerances") != DEFAULT.as_dict():
+    if not failed and run.get("tolerances") != DEFAULT.as_dict():
         return "it was computed with other tolerances"
-    if detail_of(record) != detail:
+    if not failed and detail_of(record) != detail:
         return f"records are {_WORDS[detail_of(record)]}, and those wanted are {_WORDS[detail]}"
     if run.get("input") != input_hash(item):
-        return f"{item.source!r}, or a file it names, has changed since"
+        changed = f"{item.source!r}, or a file it names, has changed since"
+        return f"{changed} it was an error, and --retry looks at errors again" if failed else changed
     return None

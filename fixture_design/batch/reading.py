@@ -40,21 +40,37 @@ def layout_of(item: Item, *, placed: bool = True) -> Layout:
     return replace(variant_of(layout, item.variant), name=item.named(layout.name), sweep=None)
 
 
+def nominal_of(item: Item) -> Layout:
+    """The layout whose sweep an item is a variant of, or the item's own.
+
+    Raises:
+        InputError: as `layout_of`.
+    """
+    return _nominal(item.source, item.text, item.line, placed=False)
+
+
 def values_of(item: Item) -> Mapping[str, Any]:
     """The plain values of an item's text; none where it cannot be read."""
+    return _values(item.source, item.text, item.line)
+
+
+@lru_cache(maxsize=_KEPT)
+def _values(source: str, text: bytes | None, line: int | None) -> Mapping[str, Any]:
+    """Kept, since a text's layout and its hash want them one after the other: YAML is slow to read."""
     try:
-        values = _quick(item)
-        return _document(item).values if values is None else values
+        values = _quick(Item(source, text, line))
+        return MappingProxyType(_document(source, text, line).values if values is None else values)
     except InputError:
         return MappingProxyType({})
 
 
-def _document(item: Item) -> Document:
-    if item.text is None:
-        return read_document(item.source)
-    if item.line is None:
-        return document_of(item.text, item.source)
-    return line_document(item.text, item.source)
+@lru_cache(maxsize=_KEPT)
+def _document(source: str, text: bytes | None, line: int | None) -> Document:
+    if text is None:
+        return read_document(source)
+    if line is None:
+        return document_of(text, source)
+    return line_document(text, source)
 
 
 def _quick(item: Item) -> dict[str, Any] | None:
@@ -85,7 +101,7 @@ def _nominal(source: str, text: bytes | None, line: int | None, placed: bool) ->
     item = Item(source, text, line)
     try:
         values = None if placed else _quick(item)
-        document = _document(item) if values is None else Document(values, source)
+        document = _document(source, text, line) if values is None else Document(values, source)
         layout = layout_from_data({"name": item.default_name, **document.values}, source, document.place)
     except InputError as error:
         if line is not None and error.place is not None:

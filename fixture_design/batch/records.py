@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from time import perf_counter
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple, TypeVar
 
 from fixture_design.batch.digest import input_hash
 from fixture_design.batch.item import Entry, Item
@@ -17,8 +17,10 @@ from fixture_design.io import dumps, error_record, verdict_to_dict
 from fixture_design.layout import Layout, Verdict
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
+from fixture_design.version import VERSION
 
 Record = dict[str, Any]
+T = TypeVar("T")
 #: How much a record says: answers alone; with witnesses, margins and contacts; with the admissible sets as well.
 Detail = Literal["brief", "full", "sets"]
 
@@ -34,32 +36,64 @@ class TimeLimitError(FixtureDesignError):
     """A layout took longer than it was given."""
 
 
-#: Gives the entry of a layout whose contacts are known and which was begun at that moment, sooner than `verify`; None
-#: where that has to look at it.
-Quick = Callable[[Item, Layout, FoundContacts, float], Entry | None]
+class Looked(NamedTuple):
+    """A layout whose contacts are known; ``input``: its hash; ``seconds``: what that took."""
+
+    item: Item
+    layout: Layout
+    found: FoundContacts
+    input: str
+    seconds: float
 
 
-def entry_of(item: Item, parts: PartCache, detail: Detail, quick: Quick | None = None) -> Entry:
+def entry_of(item: Item, parts: PartCache, detail: Detail) -> Entry:
     """The record of one layout; an error is a record too."""
+    looked = look_at(item, parts)
+    return looked if isinstance(looked, Entry) else entry_of_looked(looked, parts, detail)
+
+
+def look_at(item: Item, parts: PartCache) -> Looked | Entry:
+    """A layout with its contacts; the record of the error where it has none."""
+    return _or_failure(item, lambda placed: _looked(item, parts, placed))
+
+
+def entry_of_looked(looked: Looked, parts: PartCache, detail: Detail) -> Entry:
+    """The record of one layout whose contacts are known, by `verify`."""
+
+    def entry(placed: bool) -> Entry:
+        return _entry(_looked(looked.item, parts, True) if placed else looked, detail)
+
+    return _or_failure(looked.item, entry)
+
+
+def _or_failure(item: Item, work: Callable[[bool], T]) -> T | Entry:
+    """What ``work`` gives; the record of its error. It is told whether places in the text are wanted, for a message."""
     try:
         try:
-            return _entry(item, parts, detail, quick, placed=False)
-        except InputError:  # once more, for a message that says where
-            return _entry(item, parts, detail, quick, placed=True)
+            return work(False)
+        except InputError:
+            return work(True)
     except InputError as error:
         return failure(item, error.within(item.source))
     except Exception as error:  # noqa: BLE001 - a fault of ours in one layout must not cost the others' verdicts
         return failure(item, error)
 
 
-def _entry(item: Item, parts: PartCache, detail: Detail, quick: Quick | None, *, placed: bool) -> Entry:
+def _looked(item: Item, parts: PartCache, placed: bool) -> Looked:
     start = perf_counter()
     layout = layout_of(item, placed=placed)
     found = contacts_of(layout, parts.geometry_of(layout))
-    if quick is not None and (entry := quick(item, layout, found, start)) is not None:
-        return entry
+    digest = input_hash(item)
+    return Looked(item, layout, found, digest, perf_counter() - start)
+
+
+def _entry(looked: Looked, detail: Detail) -> Entry:
+    start, (item, layout, found, digest, seconds) = perf_counter(), looked
     record = verdict_record(verify(layout, found=found, sets=detail == "sets"), detail)
-    record["run"] |= {"input": input_hash(item), "time": round(perf_counter() - start, TIME_DIGITS)}
+    if item.variant is not None and layout.elements:
+        record["run"] |= {"surface_gap": layout.surface_gap}
+    seconds += perf_counter() - start
+    record["run"] |= {"input": digest, "time": round(seconds, TIME_DIGITS)}
     return entry_of_record(record)
 
 
@@ -80,10 +114,11 @@ def detail_of(record: Record) -> Detail:
 
 
 def failure(item: Item, error: Exception) -> Entry:
-    """The record of a layout that has no verdict."""
+    """The record of a layout that has no verdict; it too says what exactly it is about."""
     name = values_of(item).get("name")
     known = name if isinstance(name, str) and name else item.default_name
-    return entry_of_record(error_record(item.source, error, item.named(known)))
+    record = error_record(item.source, error, item.named(known))
+    return entry_of_record(record | {"run": {"version": VERSION, "input": input_hash(item)}})
 
 
 def entry_of_record(record: Record) -> Entry:

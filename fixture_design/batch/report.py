@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import heapq
-from array import array
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 from fixture_design.batch.against import Change, Comparison
+from fixture_design.batch.collected import MOST_ROWS, Row, collected
 from fixture_design.batch.histogram import histogram
-from fixture_design.batch.outcome import OUTCOMES, outcome_of, required_margins, smallest_margin
-from fixture_design.batch.records import Record
+from fixture_design.batch.outcome import OUTCOMES
+from fixture_design.batch.previews import deviations_in_words, previews
 from fixture_design.batch.results import records_in
-from fixture_design.batch.summary import Summary
+from fixture_design.batch.summary import Robustness, Summary
 from fixture_design.io.text_file import write_text
 from fixture_design.version import VERSION
+from fixture_design.viewing import CARD_STYLE
 from fixture_design.viewing.markup import Markup, joined, table, tag
-
-#: Rows of a table: more make a page slow, and the worst come first.
-MOST_ROWS = 2000
 
 _STYLE = """
 body { font: 14px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 80rem; padding: 0 1rem; color: #222; }
@@ -28,6 +26,7 @@ padding: .2rem .6rem; border-bottom: 1px solid #e4e4e4; } th { background: #f4f4
 table.sortable th { cursor: pointer; } .number { text-align: right; font-variant-numeric: tabular-nums; }
 .yes { color: #1a7f37; } .no, .bad-input, .internal-error { color: #b42318; } .undecided { color: #9a6700; }
 figure { display: inline-block; margin: .5rem 1rem .5rem 0; } figcaption { color: #555; }
+article { border-top: 2px solid #ccc; margin-top: 1rem; } small { font-weight: normal; color: #666; }
 rect.good { fill: #1a7f37; } rect.bad { fill: #b42318; } svg text { font-size: 11px; fill: #555; }
 """
 
@@ -40,6 +39,7 @@ document.querySelectorAll("table.sortable").forEach(table => {
     const key = row => row.cells[column].innerText;
     rows.sort((a, b) => {
       const x = key(a), y = key(b), u = parseFloat(x), v = parseFloat(y);
+      if (!x || !y) return !x - !y;  // what is empty comes last both ways
       const order = isNaN(u) || isNaN(v) ? (isNaN(u) - isNaN(v)) || x.localeCompare(y) : u - v;
       return down ? order : -order;
     });
@@ -50,28 +50,41 @@ document.querySelectorAll("table.sortable").forEach(table => {
 
 
 def write_batch_report(
-    output: Path, path: Path, summary: Summary, comparison: Comparison | None = None, now: datetime | None = None
+    output: Path,
+    path: Path,
+    summary: Summary,
+    comparison: Comparison | None = None,
+    now: datetime | None = None,
+    files: Sequence[Path] = (),
 ) -> None:
     """Writes the page about an output file.
 
     Args:
         path: replaced at once.  now: what the page says it was made at; by default the time it is.
+        files: of the batch, as `input_files` gives them, to draw the worst layouts; without them there is no drawing.
 
     Raises:
         FileFormatError: it cannot be written.
     """
     when = (now or datetime.now(UTC)).strftime("%Y-%m-%d %H:%M UTC")
+    found = collected(records_in(output))
     sections = [
         ("Outcomes", _counts(summary)),
         ("Sweeps", _sweeps(summary)),
         ("Against an earlier run", None if comparison is None else _comparison(comparison)),
-        ("Margins", _margins(output)),
-        ("Errors", _errors(output)),
-        ("Layouts", _layouts(output, summary.count)),
+        ("Margins", _margins(found.margins)),
+        ("Errors", _errors(found.errors)),
+        ("The worst", previews(found.worst.numbers, files) if files else None),
+        ("Layouts", _layouts(found.rows, summary.count)),
     ]
     parts = [joined([tag("h2", heading), content]) for heading, content in sections if content is not None]
     about = tag("p", f"{output.name}, {summary.count} layouts, {when}, fixture-design {VERSION}")
-    head = tag("head", Markup('<meta charset="utf-8">'), tag("title", f"{output.name}: batch"), _raw("style", _STYLE))
+    head = tag(
+        "head",
+        Markup('<meta charset="utf-8">'),
+        tag("title", f"{output.name}: batch"),
+        _raw("style", _STYLE + CARD_STYLE),
+    )
     body = tag("body", tag("h1", "Batch"), about, *parts, _raw("script", _SORT))
     write_text(path, "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n")
 
@@ -94,9 +107,25 @@ def _sweeps(summary: Summary) -> Markup | None:
         sure = f"{100 * low:.3g} % to {100 * high:.3g} %" if sweep.sampled else "a grid"
         worst, margin = ("", None) if sweep.worst is None else (sweep.worst_name, sweep.worst.margin)
         outcome = "" if sweep.worst is None else _outcome(sweep.worst.outcome)
-        rows.append([sweep.source, _number(sweep.count), _number(sweep.holds), sure, worst, outcome, _margin(margin)])
-    headings = ["sweep", "variants", "hold", "95 % confidence", "worst variant", "outcome", "margin"]
+        rows.append(
+            [
+                sweep.source,
+                _number(sweep.count),
+                _number(sweep.holds),
+                sure,
+                worst,
+                outcome,
+                _margin(margin),
+                _off(sweep),
+            ]
+        )
+    headings = ["sweep", "variants", "hold", "95 % confidence", "worst variant", "outcome", "margin", "it is off by"]
     return table(headings, rows, class_="sortable")
+
+
+def _off(sweep: Robustness) -> Markup:
+    off = sweep.worst_off
+    return tag("small", "" if off is None else deviations_in_words(off))
 
 
 def _comparison(comparison: Comparison) -> Markup:
@@ -114,46 +143,24 @@ def _change(change: Change) -> list[object]:
     return [change.name, change.source, change.what, *values]
 
 
-def _margins(output: Path) -> Markup | None:
+def _margins(margins: Mapping[str, Sequence[float]]) -> Markup | None:
     """One histogram for everything that is required; brief records have no margins."""
-    found: dict[str, array[float]] = {}
-    for record in records_in(output):
-        for what, margin in required_margins(record):
-            if margin is not None:
-                found.setdefault(what, array("d")).append(margin)
-    return joined(histogram(margins, what) for what, margins in found.items()) if found else None
+    return joined(histogram(known, what) for what, known in margins.items()) if margins else None
 
 
-def _errors(output: Path) -> Markup | None:
-    kinds = Counter(record["error"]["kind"] for record in records_in(output) if "error" in record)
+def _errors(kinds: Counter[str]) -> Markup | None:
     return table(["kind", "layouts"], [[kind, _number(n)] for kind, n in kinds.most_common()]) if kinds else None
 
 
-def _layouts(output: Path, count: int) -> Markup:
-    worst = heapq.nsmallest(MOST_ROWS, enumerate(records_in(output)), key=lambda pair: _badness(*pair))
+def _layouts(worst: Sequence[Row], count: int) -> Markup:
     rows = [
-        [_number(number + 1), record["name"], record.get("source"), _outcome(outcome_of(record)),
-         _margin(smallest_margin(record)), _why(record), _margin(record.get("run", {}).get("time"))]
-        for number, record in worst
+        [_number(row.number + 1), row.name, row.source, _outcome(row.outcome), _margin(row.margin), row.why,
+         _margin(row.seconds)]
+        for row in worst
     ]  # fmt: skip
     said = f"The {MOST_ROWS} worst of {count}." if count > MOST_ROWS else "The worst first."
     headings = ["#", "layout", "source", "outcome", "smallest margin", "why", "time [s]"]
     return joined([tag("p", said, " A click on a heading sorts."), table(headings, rows, class_="sortable")])
-
-
-def _badness(number: int, record: Record) -> tuple[int, float, int]:
-    margin = smallest_margin(record)
-    return OUTCOMES.index(outcome_of(record)), float("inf") if margin is None else margin, number
-
-
-def _why(record: Record) -> str:
-    """What is open, or what went wrong."""
-    if "error" in record:
-        return f"{record['error']['kind']}: {record['error']['message']}"
-    rows = [row for row in record.get("requirements", []) if row["verdict"] != "yes"]
-    return ", ".join(
-        f"{row['group']}: {row['require'].replace('_', ' ')} {row['verdict'] or 'no contacts'}" for row in rows
-    )
 
 
 def _outcome(word: str) -> Markup:

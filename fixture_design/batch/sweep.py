@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from fixture_design.arrays import Vector
+from fixture_design.arrays import Point, Vector
 from fixture_design.contacts import Contact
 from fixture_design.errors import InputError
 from fixture_design.layout import Layout, Part, Pose
@@ -78,25 +78,62 @@ def is_sampled(layout: Layout) -> bool:
 def variant_of(layout: Layout, number: int) -> Layout:
     """The ``number``-th variant of a layout's sweep, counted from 0.
 
-    An element that was moved off the surface by the sweep still counts as touching: `surface_gap` grows by as much as
-    the variants may be off.
+    An element that was moved off the surface still counts as touching, in the surface's point nearest to it: the
+    variant's `surface_gap` is the layout's and as much as the variant moves an element against the part, at most.
     """
-    ranges = _ranges(layout)
-    off = _deviations(ranges, layout, number)
-    pose, at = off[: len(ranges.pose)] * ranges.pose, off[len(ranges.pose) : -1].reshape(ranges.places, -1) * ranges.at
+    off = deviations_of(layout, number)
+    at = list(off.at.values())
     moved = replace(
         layout,
-        part=_moved_part(layout.part, pose) if layout.part is not None and pose.any() else layout.part,
+        part=_moved_part(layout.part, off.pose) if layout.part is not None and off.pose.any() else layout.part,
         elements=tuple(replace(e, at=e.at + a) for e, a in zip(layout.elements, at, strict=False)),
         contacts=tuple(
             replace(c, point=c.point + a) for c, a in zip(layout.contacts, at[len(layout.elements) :], strict=False)
         ),
-        surface_gap=layout.surface_gap + _reach(ranges, layout),
     )
-    if ranges.friction is None:
-        return moved
-    low, high = ranges.friction
-    return _with_friction(moved, low + (high - low) * (off[-1] + 1) / 2)
+    moved = replace(moved, surface_gap=layout.surface_gap + _moved_by(layout, moved))
+    return moved if off.friction is None else _with_friction(moved, off.friction)
+
+
+@dataclass(frozen=True, eq=False)
+class Deviations:
+    """How far one variant is off.
+
+    Attributes:
+        pose: shape (k,), of the part's translation [m] and rotation [rad].
+        at: by element and contact, shape (p,) [m].
+        friction: the layout's coefficient in this variant; None where it is not swept.
+    """
+
+    pose: Vector
+    at: dict[str, Point]
+    friction: float | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values; what does not vary is left out."""
+        plane = 2 if len(self.pose) == 3 else 3
+        data: dict[str, Any] = {}
+        if self.pose.any():
+            turn = float(self.pose[2]) if plane == 2 else self.pose[3:].tolist()
+            keys = ("xy", "theta") if plane == 2 else ("xyz", "rpy")
+            data["part_pose"] = dict(zip(keys, (self.pose[:plane].tolist(), turn), strict=True))
+        if any(off.any() for off in self.at.values()):
+            data["at"] = {name: off.tolist() for name, off in self.at.items()}
+        return data if self.friction is None else data | {"friction": self.friction}
+
+
+def deviations_of(layout: Layout, number: int) -> Deviations:
+    """What the ``number``-th variant of a layout's sweep changes."""
+    ranges = _ranges(layout)
+    off = _deviations(ranges, layout, number)
+    count = len(ranges.pose)
+    at = off[count:-1].reshape(ranges.places, ranges.plane) * ranges.at
+    names = [placed.name for placed in (*layout.elements, *layout.contacts)]
+    friction = None
+    if ranges.friction is not None:
+        low, high = ranges.friction
+        friction = low + (high - low) * (float(off[-1]) + 1) / 2
+    return Deviations(off[:count] * ranges.pose, dict(zip(names, at, strict=True)), friction)
 
 
 def _ranges(layout: Layout) -> _Ranges:
@@ -139,15 +176,13 @@ def _moved_part(part: Part, off: Vector) -> Part:
     return replace(part, pose=Pose(turn @ part.pose.rotation, part.pose.translation + off[:plane]))
 
 
-def _reach(ranges: _Ranges, layout: Layout) -> float:
-    """How far an element may be off the surface for the sweep's sake [m]."""
-    plane = ranges.plane
-    shift = float(np.linalg.norm(ranges.pose[:plane])) + ranges.at * np.sqrt(plane)
-    if layout.part is None or not layout.elements:
+def _moved_by(layout: Layout, moved: Layout) -> float:
+    """The longest way that an element has made against the part: |X'_WP X_PW at - at'| [m]."""
+    if layout.part is None or moved.part is None or not layout.elements:
         return 0.0
-    center = layout.part.pose.translation
-    lever = max(float(np.linalg.norm(element.at - center)) for element in layout.elements)
-    return shift + float(np.linalg.norm(ranges.pose[plane:])) * lever
+    at = np.array([element.at for element in layout.elements])
+    went_along = moved.part.pose.points(layout.part.pose.inverse().points(at))
+    return float(np.linalg.norm(went_along - [element.at for element in moved.elements], axis=1).max())
 
 
 def _with_friction(layout: Layout, friction: float) -> Layout:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import csv
-import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from fixture_design.batch.outcome import outcome_of, smallest_margin
 from fixture_design.batch.records import Record
 from fixture_design.batch.results import records_in
 from fixture_design.errors import FileFormatError, InputError
-from fixture_design.io.text_file import write_text
+from fixture_design.io.text_file import write_pieces
 
 #: Columns that every table has; then verdict and margin of every question of every group.
 _FIRST = ("name", "source", "outcome", "smallest_margin", "error_kind", "error_message", "input", "time")
@@ -36,7 +35,7 @@ def check_table(path: Path) -> None:
 
 
 def write_table(output: Path, path: Path) -> None:
-    """Writes the records of an output file as a table with a row each.
+    """Writes the records of an output file as a table with a row each; for Parquet all of it is in memory.
 
     Raises:
         InputError: as `check_table`.  FileFormatError: it cannot be written.
@@ -44,11 +43,7 @@ def write_table(output: Path, path: Path) -> None:
     check_table(path)
     columns = _columns(records_in(output))
     if path.suffix.lower() == ".csv":
-        text = io.StringIO()
-        writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(map(row_of, records_in(output)))
-        write_text(path, text.getvalue())
+        write_pieces(path, _csv_lines(columns, map(row_of, records_in(output))))
         return
     rows = [{**dict.fromkeys(columns), **row_of(record)} for record in records_in(output)]
     by_column = {column: [row[column] for row in rows] for column in columns}
@@ -56,6 +51,20 @@ def write_table(output: Path, path: Path) -> None:
         _write_parquet(by_column, path)
     except (OSError, ImportError) as cause:  # pandas needs pyarrow or fastparquet
         raise FileFormatError(f"the table cannot be written: {cause}", source=path) from cause
+
+
+class _Line:
+    """A file of which `csv` only wants to know where a line goes: back to who asked for it."""
+
+    def write(self, text: str) -> str:
+        return text
+
+
+def _csv_lines(columns: list[str], rows: Iterable[dict[str, Any]]) -> Iterator[str]:
+    writer = csv.DictWriter(_Line(), columns, restval="", lineterminator="\n")
+    yield writer.writerow(dict(zip(columns, columns, strict=True)))  # type: ignore[misc]
+    for row in rows:
+        yield writer.writerow(row)  # type: ignore[misc]
 
 
 def _write_parquet(columns: dict[str, list[Any]], path: Path) -> None:

@@ -40,8 +40,15 @@ def batch(
         int | None, typer.Option("--jobs", min=1, help="Worker processes.", show_default="all cores")
     ] = None,
     limit: Annotated[
-        float | None, typer.Option("--limit", min=0.001, help="Seconds that one layout may take.", metavar="SECONDS")
+        float | None,
+        typer.Option(
+            "--limit", min=0.001, help="Seconds that one layout may take; not with --cluster.", metavar="SECONDS"
+        ),
     ] = None,
+    retry: Annotated[
+        bool,
+        typer.Option("--retry", help="Look again at errors: dead workers, time limits, bad files."),
+    ] = False,
     cluster: Annotated[
         str | None,
         typer.Option("--cluster", help="Dask scheduler that runs it instead of this machine.", metavar="ADDRESS"),
@@ -72,7 +79,10 @@ def batch(
 
     detail = detail_wanted(brief, sets)
     if cluster is not None and (jobs is not None or limit is not None):
-        raise InputError("--jobs and --limit are for this machine", expected="neither of them with --cluster")
+        raise InputError(
+            "--jobs and --limit are for this machine: a cluster has its own workers, and Dask ends none for its time",
+            expected="neither of them with --cluster",
+        )
     # on a cluster all see the same files, but none has this folder
     files = input_files([path.absolute() for path in paths] if cluster else paths, besides=output)
     _check_others(output, files, report, table, against)
@@ -81,19 +91,20 @@ def batch(
         workers = local_workers(detail, jobs, limit) if cluster is None else Cluster(cluster, detail)
         summary = run_batch(
             files, output, workers,
-            detail=detail, watch=progress.add, ready=progress.resumed, stop=interrupted,
+            detail=detail, watch=progress.add, ready=progress.resumed, retry=retry, stop=interrupted,
         )  # fmt: skip
     progress.close()
     comparison = compare(output, against) if against is not None and not summary.interrupted else None
+    if report is not None:
+        # whoever interrupts it does not want to wait for drawings
+        write_batch_report(output, report, summary, comparison, files=[] if summary.interrupted else files)
+    if table is not None:
+        write_table(output, table)
     if as_json:
         said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
         typer.echo(dumps(said))
     else:
         print_summary(summary, comparison)
-    if report is not None:
-        write_batch_report(output, report, summary, comparison)
-    if table is not None:
-        write_table(output, table)
     if summary.interrupted:
         say(f"{summary.count} records are in {output}; the same command goes on from there")
         raise typer.Exit(ExitCode.INTERRUPTED)

@@ -15,7 +15,8 @@ _TOLD = 10
 def print_summary(summary: Summary, comparison: Comparison | None = None) -> None:
     """Counts, then each sweep, then what changed since an earlier run."""
     resumed = f", {summary.resumed} of them from before" if summary.resumed else ""
-    typer.echo(f"{summary.count} layouts{resumed}")
+    retried = f"; {summary.retried} that were errors were looked at again" if summary.retried else ""
+    typer.echo(f"{summary.count} layout{'' if summary.count == 1 else 's'}{resumed}{retried}")
     for outcome, count in summary.as_dict()["outcomes"].items():
         if count:
             typer.echo(f"  {outcome}: {count}")

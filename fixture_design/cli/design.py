@@ -18,15 +18,25 @@ from fixture_design.cli.exit_codes import ExitCode, of_answer
 from fixture_design.cli.messages import say
 from fixture_design.design import DesignResult, Task
 from fixture_design.errors import FileFormatError, InputError, UnsupportedError
-from fixture_design.io import TASK_ENDINGS, design_to_dict, dumps, layout_text, read_task, task_of_part, write_layout
+from fixture_design.io import (
+    TASK_ENDINGS,
+    design_to_dict,
+    dumps,
+    layout_text,
+    read_task_or_layout,
+    task_of_part,
+    write_layout,
+)
 from fixture_design.io import write_csv as save_csv
 from fixture_design.io import write_urdf as save_urdf
+from fixture_design.layout import Layout
 
+_GIVEN = "Task file, a part (STL, OBJ, ..., URDF), or a layout to repair."
 _OUT = typer.Option("--out", "-o", help="Layout file to write (YAML, or JSON by its ending); default: stdout.")
 
 
 def design(
-    task_or_part: Annotated[Path, typer.Argument(help="Task file, or a part (STL, OBJ, ..., URDF).", readable=False)],
+    task_or_part: Annotated[Path, typer.Argument(help=_GIVEN, readable=False)],
     out: Annotated[Path | None, _OUT] = None,
     scale: Annotated[float, typer.Option(help="Factor that makes a part file's vertices metres.")] = 1.0,
     seed: Annotated[int, typer.Option(help="Of the random numbers; the same one gives the same layout.", min=0)] = 0,
@@ -36,6 +46,8 @@ def design(
 ) -> None:
     """Find a layout that locates a part, lets it out and closes it, with the fewest elements; and say why they are few.
 
+    Of a layout: the fewest elements moved, added or removed, and preloads changed, that make its requirements hold.
+
     Exit code: 0 a layout that holds, 1 there is none, 3 none was found or it is undecided, 2 bad input.
     """
     task = _task(task_or_part, scale)
@@ -44,10 +56,14 @@ def design(
     if urdf is not None and task.space == "planar":
         raise UnsupportedError("a planar layout has no URDF form", source=task.source, expected="`--csv`")
     from fixture_design.design import design as design_layout  # noqa: PLC0415 - after the arguments are known good
+    from fixture_design.design import repair  # noqa: PLC0415 - likewise
 
     with _interruptible() as cancelled:
         try:
-            result = design_layout(task, seed=seed, progress=_shown, cancelled=cancelled)
+            if isinstance(task, Layout):
+                result = repair(task, seed=seed, progress=_shown, cancelled=cancelled)
+            else:
+                result = design_layout(task, seed=seed, progress=_shown, cancelled=cancelled)
         except InputError as error:
             raise error.within(task_or_part) from error
         finally:
@@ -57,20 +73,21 @@ def design(
         raise typer.Exit(ExitCode.INTERRUPTED if cancelled() else of_answer(result.satisfied))
 
 
-def _task(path: Path, scale: float) -> Task:
+def _task(path: Path, scale: float) -> Task | Layout:
     if path.suffix.lower() not in TASK_ENDINGS:
         return task_of_part(path, scale)
     if scale != 1:
         raise FileFormatError("`--scale` is for part files", source=path, expected="`scale` in the task's `part`")
-    return read_task(path)
+    return read_task_or_layout(path)
 
 
-def _check_target(path: Path | None, task: Task) -> None:
+def _check_target(path: Path | None, task: Task | Layout) -> None:
     """An output must not be one of the inputs, and its folder must be there, before any work is done."""
     if path is None:
         return
-    start = task.start.source if task.start is not None else None
-    for given in (task.source, task.part.file, start):
+    start = task.start.source if isinstance(task, Task) and task.start is not None else None
+    part = None if task.part is None else task.part.file
+    for given in (task.source, part, start):
         if given is not None and os.path.realpath(given) == os.path.realpath(path):
             raise FileFormatError("this would overwrite an input", source=path, expected="another name")
     if not path.absolute().parent.is_dir():
@@ -104,13 +121,14 @@ def _shown(words: str, part: float) -> None:
         sys.stderr.flush()
 
 
-def _write(result: DesignResult, task: Task, out: Path | None, urdf: Path | None, csv: Path | None) -> None:
+def _write(result: DesignResult, task: Task | Layout, out: Path | None, urdf: Path | None, csv: Path | None) -> None:
     if result.layout is None or result.verdict is None:
         return
     if out is not None:
         write_layout(result.layout, out)
     if urdf is not None:
-        save_urdf(result.layout, result.verdict, urdf, task.candidates.stem)
+        sizes = task.candidates.stem if isinstance(task, Task) else None
+        save_urdf(result.layout, result.verdict, urdf, sizes)
     if csv is not None:
         save_csv(result.verdict, csv)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from fixture_design.arrays import Point, Vector
 from fixture_design.cli.messages import printable
-from fixture_design.design import Bound, DesignResult, Step
+from fixture_design.design import Bound, ChangeBound, DesignResult, Step
 from fixture_design.layout import Answer
 from fixture_design.viewing.motion_words import motion_in_words
 
@@ -26,6 +26,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield printable(_step_in_words(step, reference, length))
     if result.free is not None:
         yield f"free whatever touches the part: {motion_in_words(result.free, reference, length)}"
+    if result.changes is not None:
+        yield _changes_in_words(result.changes)
     if result.bound is not None:
         yield _bound_in_words(result.bound)
     if result.out is not None:
@@ -34,6 +36,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield f"accuracy {_accuracy_in_words(result.accuracy, result.best_accuracy)}"
     if result.margin is not None:
         yield f"margin of closure {result.margin:.3g}"
+    if result.preload is not None:
+        yield _preload_in_words(result)
     for note in result.notes:
         yield printable(f"note: {note}")
     outcome = _OUTCOME[result.satisfied]
@@ -58,12 +62,23 @@ def _step_in_words(step: Step, reference: Point, length: float) -> str:
         "twice": f"{others} locate the same thing twice",
         "in the way": "the part does not come out past it",
         "spare": "the others do without it",
+        "loads": f"it pushes with {step.preload or 0.0:.4g} N",
     }[step.why]
     return f"{step.action} {step.element}: {why}"
 
 
 def _motion(motion: Vector | None, reference: Point, length: float) -> str:
     return "what is left" if motion is None else motion_in_words(motion, reference, length)
+
+
+def _changes_in_words(changes: ChangeBound) -> str:
+    if changes.found == 0:
+        return "nothing has to change"
+    found = f"{changes.found} change{'' if changes.found == 1 else 's'}"
+    if changes.proven:
+        return f"{found}; fewer do not do it (proven)"
+    where = "" if changes.complete else " in the directions that were tried"
+    return f"{found}; at least {changes.bound} are needed{where}"
 
 
 def _bound_in_words(bound: Bound) -> str:
@@ -75,6 +90,16 @@ def _bound_in_words(bound: Bound) -> str:
     if bound.found is None:
         return f"{least} are needed {among}"
     return f"{bound.found} elements; {least} are needed {among}: {bound.gap} more than proven"
+
+
+def _preload_in_words(result: DesignResult) -> str:
+    """How far it may be from the least one."""
+    words = f"preload {result.preload:.4g} N in all"
+    if result.best_preload_here is not None:
+        words += f"; with these locators no clamps do with less than {result.best_preload_here:.4g} N"
+    if result.best_preload is not None:
+        words += f", with others none with less than {result.best_preload:.4g} N"
+    return words
 
 
 def _accuracy_in_words(accuracy: float, best: float) -> str:

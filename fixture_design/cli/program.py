@@ -11,9 +11,11 @@ import typer
 from typer.exceptions import TyperException
 
 from fixture_design.cli.batch import batch
+from fixture_design.cli.classifier import classifier
 from fixture_design.cli.design import design
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say, say_internal_error
+from fixture_design.cli.recognize import recognize
 from fixture_design.cli.schema import schema
 from fixture_design.cli.states import states
 from fixture_design.cli.verify import verify
@@ -34,6 +36,8 @@ app.command()(design)
 app.command()(batch)
 
 app.command()(states)
+app.command()(classifier)
+app.command()(recognize)
 app.command()(schema)
 
 

@@ -11,7 +11,7 @@ from fixture_design.io import json_schema
 
 
 def schema(
-    name: Annotated[str, typer.Argument(help="assembly, graph, layout, task or verdict", metavar="NAME")],
+    name: Annotated[str, typer.Argument(help="assembly, classifier, graph, layout, task or verdict", metavar="NAME")],
 ) -> None:
     """Print the JSON Schema of a file kind."""
     typer.echo(json.dumps(json_schema(name), indent=2))

@@ -1,7 +1,8 @@
 """Design: elements added, moved and removed until the conditions hold, and the proof that fewer do not."""
 
 from fixture_design.design.design import design
-from fixture_design.design.result import Bound, DesignResult
+from fixture_design.design.repair import repair
+from fixture_design.design.result import Bound, ChangeBound, DesignResult
 from fixture_design.design.steps import Step
 from fixture_design.design.task import CandidateRules, Grid, Limits, Objective, PinRules, Task
 from fixture_design.design.ways import Progress, Ways
@@ -9,6 +10,7 @@ from fixture_design.design.ways import Progress, Ways
 __all__ = [
     "Bound",
     "CandidateRules",
+    "ChangeBound",
     "DesignResult",
     "Grid",
     "Limits",
@@ -19,4 +21,5 @@ __all__ = [
     "Task",
     "Ways",
     "design",
+    "repair",
 ]

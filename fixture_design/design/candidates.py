@@ -130,23 +130,41 @@ class Candidates:
     @cached_property
     def rows(self) -> Several:
         """Unit face vectors of the normals, shape (n, k, d)."""
-        return self._unit(self.points, self.normals)
+        return _of_length_one(self.pushes(rough=False))
 
     @cached_property
     def rows_with_friction(self) -> Several:
         """Unit face vectors of the edges of the friction cones, shape (n, k e, d); exact in the plane, inside else."""
+        return _of_length_one(self.pushes(rough=True))
+
+    @cached_property
+    def rows_around_friction(self) -> Several:
+        """The same with pyramids around the cones: what does not close with them does not close."""
+        return _of_length_one(self.pushes(rough=True, outer=True))
+
+    def pushes(self, *, rough: bool, outer: bool = False) -> Several:
+        """Face vectors [e; (x - reference) X e / length] of forces e with a normal part of 1, shape (n, k, d).
+
+        Args:
+            rough: the edges of a pyramid in each friction cone, shape (n, k e, d); else the normals.
+            outer: the pyramid around the cone instead.
+        """
+        if not rough:
+            return self._faces(self.points, self.normals)
         n, _, p = self.normals.shape
         first, second, around = np.zeros_like(self.normals), np.zeros_like(self.normals), np.array([0, np.pi])
+        size = 1.0
         if p == 2:
             first = np.stack([-self.normals[..., 1], self.normals[..., 0]], axis=-1)
         else:
             around = 2 * np.pi * np.arange(EDGES) / EDGES
+            size = 1.0 / np.cos(np.pi / EDGES) if outer else 1.0
             for index in np.argwhere(self.normals.any(axis=2)).tolist():
                 first[tuple(index)], second[tuple(index)] = tangents(self.normals[tuple(index)])
         turned = np.cos(around)[:, None] * first[:, :, None] + np.sin(around)[:, None] * second[:, :, None]
-        edges = self.normals[:, :, None] + self.friction[:, None, None, None] * turned
+        edges = self.normals[:, :, None] + size * self.friction[:, None, None, None] * turned
         points = np.broadcast_to(self.points[:, :, None], edges.shape)
-        return self._unit(points.reshape(n, -1, p), edges.reshape(n, -1, p))
+        return self._faces(points.reshape(n, -1, p), edges.reshape(n, -1, p))
 
     def chosen(self, which: Indices | Mask) -> Candidates:
         """Some of them, in that order."""
@@ -218,13 +236,17 @@ class Candidates:
         rows[several] = np.where(kept[:, :, None], rows[several], 0.0)
         return rows
 
-    def _unit(self, points: Several, normals: Several) -> Several:
+    def _faces(self, points: Several, normals: Several) -> Several:
         n, k, p = normals.shape
-        levers = (points - self.scale.reference).reshape(-1, p)
-        rows = face_vectors(levers, normals.reshape(-1, p))
+        rows = face_vectors((points - self.scale.reference).reshape(-1, p), normals.reshape(-1, p))
         rows[:, p:] /= self.scale.length
-        lengths = np.linalg.norm(rows, axis=1, keepdims=True)
-        return np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0).reshape(n, k, -1)
+        return rows.reshape(n, k, -1)
+
+
+def _of_length_one(rows: Several) -> Several:
+    """Rows of length one; what says nothing stays zero."""
+    lengths = np.linalg.norm(rows, axis=2, keepdims=True)
+    return np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0)
 
 
 def _packed(found: Sequence[tuple[Element, Sequence[Contact]]]) -> tuple[Several, Several]:

@@ -16,6 +16,7 @@ from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import redundancy
 from fixture_design.design.pinned import pinned_best_first
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty, plans
+from fixture_design.design.preloads import duties_of, found_preload, preloaded
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.search import search
@@ -25,7 +26,7 @@ from fixture_design.design.steps import Step, additions, in_world
 from fixture_design.design.task import Task
 from fixture_design.design.touching import candidates_of
 from fixture_design.design.unstoppable import free_for_certain
-from fixture_design.design.ways import Progress, Ways
+from fixture_design.design.ways import Progress, Ways, ways_of
 from fixture_design.errors import GeometryError
 from fixture_design.layout import Answer
 
@@ -66,7 +67,7 @@ def design(
     Example:
         >>> design(read_task("bracket.task.yaml")).layout        # doctest: +SKIP
     """
-    ways = ways or _ways_of(task)
+    ways = ways or ways_of(task.part, task.surface_gap)
     progress("candidates", 0.0)
     candidates, left_out_notes = candidates_of(task, ways, ways.spots(task.candidates, seed))
     candidates, no_room = fitting(task, ways, candidates)
@@ -89,12 +90,6 @@ def design(
         free = best.free  # the next plan has to live with it
     assert best is not None  # there is at least one plan, and candidates for it
     return best
-
-
-def _ways_of(task: Task) -> Ways:
-    from fixture_design.verification.surface import PartSurface  # noqa: PLC0415 - only where no fake is given
-
-    return PartSurface(task.part, task.surface_gap)
 
 
 def _may_let_go(task: Task) -> bool:
@@ -127,7 +122,8 @@ def _designed(
         start.candidates, task.limits, task.objective, start.locators, start.others, start.spare,
         locates=bool(set(LOCATING) & set(locators)), leaves=leaves,
         closes="without friction" if "form_closure" in everything else closes,
-        features=features_of(task, start.candidates), standing=standing(task, start.candidates),
+        features=features_of(task, start.candidates), duties=duties_of(task, plan, ways, start.candidates),
+        standing=standing(task, start.candidates),
         cancelled=cancelled,
     )  # fmt: skip
     if start.conflict:
@@ -272,7 +268,7 @@ def _drawn_up(
     names = named(problem.candidates, found.locators, found.clamps, taken)
     layout = layout_of(task, problem.candidates, found.locators, found.clamps, names, plan.require, plan.friction)
     try:
-        verdict = ways.verify(layout)
+        layout, verdict = preloaded(ways, problem, found, layout)
     except GeometryError as cause:
         useless = _useless(task, ways, problem, found)
         if not useless.any():
@@ -290,6 +286,8 @@ def _drawn_up(
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(shown, found.locators, found.clamps, names)), bound,
         found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
+        preload=found_preload(problem, layout), best_preload=outcome.best_preload,
+        best_preload_here=outcome.best_preload_here,
         reason=reason, notes=tuple(_notes(task, problem, found)),
     )  # fmt: skip
     return result, names
@@ -301,5 +299,5 @@ def _notes(task: Task, problem: Problem, found: Found) -> Iterator[str]:
     elements = [problem.candidates.elements[index] for index in problem.kept.tolist()]
     if kept := [element.name for element in elements if element is not None and not element.fixed]:
         yield f"the bounds are those of layouts that keep {', '.join(kept)}"
-    if "preload" in task.objective:
-        yield "the objective `preload` is not evaluated by this version; the margin of closure stood for it"
+    if "preload" in task.objective and problem.duties is not None and not problem.duties.wrenches.any():
+        yield "no load and no weight acts on the part: nothing says what the clamps should push with"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from fixture_design.arrays import Indices, read_only
 from fixture_design.contacts import Role
@@ -45,6 +46,16 @@ def layout_of(
     elements = [_element(candidates, index, role, names[index]) for role, chosen in roles for index in chosen.tolist()]
     start = task.start
     given = {named.name for named in (*start.bodies, *start.contacts)} if start else set()
+    return replace(
+        empty_layout(task, require, friction),
+        elements=tuple(element for element in elements if element.name not in given),
+        bodies=start.bodies if start else (),
+        contacts=start.contacts if start else (),
+    )
+
+
+def empty_layout(task: Task, require: Mapping[str, tuple[Requirement, ...]], friction: float) -> Layout:
+    """The layout of a task without anything that touches the part."""
     return Layout(
         name=task.name,
         space=task.space,
@@ -52,12 +63,10 @@ def layout_of(
         gravity=task.gravity,
         friction=friction,
         surface_gap=task.surface_gap,
-        elements=tuple(element for element in elements if element.name not in given),
-        bodies=start.bodies if start else (),
-        contacts=start.contacts if start else (),
         key_features=task.key_features,
         loads=task.loads,
         require=require,
+        source=task.source,
     )
 
 

@@ -110,7 +110,7 @@ def fewest_stopping(
             return found(None, max(bound, least), complete=False)
         exact = motion is None
         if motion is not None:
-            motion, cut = _strongest(rows, base, pool, cover, motion, tolerances)
+            motion, cut = strongest(rows, base, pool, cover, motion, tolerances)
             motions.append(motion)
             cuts.append(cut)
 
@@ -141,7 +141,7 @@ def _too_near(cover: Indices, places: Points | None, spacing: float) -> tuple[in
     return None
 
 
-def _strongest(
+def strongest(
     rows: Several, base: Indices, pool: Indices, cover: Indices, motion: Vector, tolerances: Tolerances
 ) -> tuple[Vector, Mask]:
     """The motion of a largest set that has ``cover`` and still leaves something free, and who stops it.

@@ -98,6 +98,7 @@ def exchanged(
     fixed: Sequence[int] | Indices,
     features: Features | None = None,
     allowed: Callable[[Indices], np.ndarray] | None = None,
+    most: int = _MOST_EXCHANGES,
 ) -> Indices:
     """Locators after the best exchanges, one after the other, until none makes them better.
 
@@ -105,13 +106,14 @@ def exchanged(
         rows: unit rows of all candidates, shape (n, d).  pool: from which new ones are taken.
         chosen: independent ones to begin with.  fixed: those of them that stay.
         features: what accuracy is measured by; None for the volume.
+        most: exchanges.
         allowed: for locators at some indices which of the pool may join while each of them leaves, shape
             (k, len(pool)).
     """
     basis = _span(rows, chosen)
     inside = rows @ basis.T
     movable = ~np.isin(chosen, np.asarray(fixed, dtype=np.int64))
-    for _ in range(_MOST_EXCHANGES):
+    for _ in range(most):
         gains = _gains(inside, basis, pool, chosen, features)
         gains[~movable] = 0.0
         gains[:, np.isin(pool, chosen)] = 0.0

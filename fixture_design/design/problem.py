@@ -10,8 +10,10 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector
 from fixture_design.design.candidates import Candidates, Several
+from fixture_design.design.duties import Duties
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import Features, apart
+from fixture_design.design.pushing import Program
 from fixture_design.design.standing import Standing
 from fixture_design.design.task import Limits, Objective
 from fixture_design.tolerances import DEFAULT
@@ -27,10 +29,12 @@ class Problem:
         spare: indices of clamps of the start that may leave, preferred to new ones.
         locates: whether the locators must determine the part, as far as any candidates can.
         leaves: whether the part must come out of the locators in a straight line.
+        opens: whether some motion must leave all locators at once, be it a screw.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
         standing: which of them would run into each other; None where nobody knows.
         barred: directions out, each with the candidates that the part would run into along it, shape (n,).
+        duties: what is to be balanced by preloads; None where nobody asks.
         cancelled: asked now and then.
     """
 
@@ -42,10 +46,12 @@ class Problem:
     spare: tuple[int, ...] = ()
     locates: bool = True
     leaves: bool = True
+    opens: bool = False
     closes: str | None = "without friction"
     features: Features | None = None
     standing: Standing | None = None
     barred: tuple[tuple[Point, Mask], ...] = ()
+    duties: Duties | None = None
     cancelled: Callable[[], bool] = lambda: False
 
     @cached_property
@@ -69,6 +75,11 @@ class Problem:
         return self.candidates.rows_with_friction if self.closes == "with friction" else self.candidates.rows
 
     @cached_property
+    def bounding_rows(self) -> Several:
+        """Rows that close whenever those with the true friction cones do, for bounds: of pyramids around the cones."""
+        return self.candidates.rows_around_friction if self.closes == "with friction" else self.candidates.rows
+
+    @cached_property
     def rows(self) -> Rows:
         """Unit face vectors of all normals, one under the other: row r is of candidate r // `each`."""
         return np.ascontiguousarray(self.candidates.rows.reshape(-1, self.candidates.dimension))
@@ -87,8 +98,25 @@ class Problem:
         """A unit motion that not even all candidates stop; None where they do, or nothing has to close."""
         if self.closes is None:
             return None
-        rows = np.ascontiguousarray(self.closing_rows.reshape(-1, self.candidates.dimension))
+        rows = np.ascontiguousarray(self.bounding_rows.reshape(-1, self.candidates.dimension))
         return free_motion(rows, self.candidates.tolerances)
+
+    @cached_property
+    def pushing(self) -> Program | None:
+        """What the least preloads are reckoned by; None where nobody asks for preloads."""
+        if self.duties is None:
+            return None
+        return Program(self._rough(outer=False), self.candidates.pushes(rough=False), self.duties)
+
+    @cached_property
+    def pushing_bound(self) -> Program | None:
+        """The same with pyramids around the friction cones, for bounds."""
+        if self.duties is None:
+            return None
+        return Program(self._rough(outer=True), self.candidates.pushes(rough=False), self.duties)
+
+    def _rough(self, *, outer: bool) -> Several:
+        return self.candidates.pushes(rough=bool(self.candidates.friction.any()), outer=outer)
 
     def rows_of(self, candidates: Indices | tuple[int, ...]) -> Indices:
         """Numbers of the rows by which candidates locate, independent ones of each."""

@@ -40,29 +40,39 @@ def regions_of(problem: Problem, seed: int) -> tuple[list[Region], bool]:
     if not problem.leaves:
         clamps = None if problem.closes is None else _clamps_of_all(problem)
         return [Region(None, problem.new, clamps)], True
+    regions: list[Region] = []
+    found, complete = ways_out(problem, seed)
+    for direction, allowed in found:
+        pool = problem.new[allowed[problem.new]]
+        if not allowed[list(problem.locators)].all() or not _enough(problem, pool):
+            continue
+        if problem.closes is None:
+            regions.append(Region(direction, pool, None))
+            continue
+        least = min((region.bound for region in regions), default=np.inf)
+        clamps = _bounded(problem, pool, float(least + _AND_MORE))
+        if clamps.chosen is not None or not clamps.complete:
+            regions.append(Region(direction, pool, clamps))
+    regions.sort(key=lambda region: (region.bound, -len(region.pool)))
+    return regions, complete
+
+
+def ways_out(problem: Problem, seed: int) -> tuple[list[tuple[Point | None, Mask]], bool]:
+    """Directions out, each with the candidates that the part leaves there, shape (n,); and whether these are all."""
     several = problem.candidates.normals
+    if not problem.leaves:
+        return [(None, np.ones(len(several), dtype=bool))], True
     flat_normals = several.reshape(-1, several.shape[2])
     said: Mask = np.any(flat_normals, axis=1)
     unit, which = different(flat_normals[said])
     loading = problem.limits.loading
     found, complete = cells(unit, None if loading is None else -loading, seed)
-    regions = []
+    ways: list[tuple[Point | None, Mask]] = []
     for cell in found[:MOST_BOUNDED]:
         leaves = np.ones(len(flat_normals), dtype=bool)
         leaves[said] = cell.leaves[which]
-        allowed: Mask = np.all(leaves.reshape(len(several), -1), axis=1)
-        pool = np.array([index for index in problem.new if allowed[index]], dtype=np.int64)
-        if not allowed[list(problem.locators)].all() or not _enough(problem, pool):
-            continue
-        if problem.closes is None:
-            regions.append(Region(cell.direction, pool, None))
-            continue
-        least = min((region.bound for region in regions), default=np.inf)
-        clamps = _bounded(problem, pool, float(least + _AND_MORE))
-        if clamps.chosen is not None or not clamps.complete:
-            regions.append(Region(cell.direction, pool, clamps))
-    regions.sort(key=lambda region: (region.bound, -len(region.pool)))
-    return regions, complete and len(found) <= MOST_BOUNDED
+        ways.append((cell.direction, np.all(leaves.reshape(len(several), -1), axis=1)))
+    return ways, complete and len(found) <= MOST_BOUNDED
 
 
 def bounded_region(problem: Problem, out: Point) -> Region | None:
@@ -91,7 +101,7 @@ def _bounded(problem: Problem, pool: Indices, enough: float) -> Hitting:
     base = np.concatenate([pool, problem.kept])
     others = np.setdiff1d(problem.clampable, base)
     found = fewest_stopping(
-        problem.closing_rows, base, others, tolerances=problem.candidates.tolerances,
+        problem.bounding_rows, base, others, tolerances=problem.candidates.tolerances,
         enough=enough - len(problem.clamps), cancelled=problem.cancelled,
     )  # fmt: skip
     return Hitting(found.chosen, found.bound + len(problem.clamps), found.free, found.cuts, found.complete)

@@ -38,6 +38,24 @@ class Bound:
         return self.complete and self.gap == 0
 
 
+@dataclass(frozen=True)
+class ChangeBound:
+    """How few changes could do.
+
+    Attributes:
+        found: elements moved, added or removed, and preloads changed.
+        bound: no layout among the candidates takes fewer.  complete: whether that is so in all directions out.
+    """
+
+    found: int
+    bound: int
+    complete: bool
+
+    @property
+    def proven(self) -> bool:
+        return self.complete and self.found == self.bound
+
+
 @dataclass(frozen=True, eq=False)
 class DesignResult:
     """The outcome of a design.
@@ -52,6 +70,9 @@ class DesignResult:
         accuracy: worst error at a key feature for errors of 1 along the locators' normals, in its tolerances; without
             features 1 / volume of the locators' rows.  best_accuracy: no locators have a smaller one [-]; None unknown.
         margin: of closure, in the verdict's scale; None where nothing has to close.
+        preload: what the clamps push with in all [N]; None where nobody asks.  best_preload: no layout with as few
+            clamps needs less [N]; None unknown.  best_preload_here: with these locators none does, whatever the clamps.
+        changes: of a repair.
         free: [dx; dtheta] about W's origin, a motion that no candidate stops; None where there is none.
         reason: why there is no layout, or not the one that was asked for.
         notes: for people.
@@ -66,6 +87,10 @@ class DesignResult:
     accuracy: float | None = None
     best_accuracy: float | None = None
     margin: float | None = None
+    preload: float | None = None
+    best_preload: float | None = None
+    best_preload_here: float | None = None
+    changes: ChangeBound | None = None
     free: Vector | None = None
     reason: str | None = None
     notes: tuple[str, ...] = ()

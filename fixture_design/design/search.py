@@ -20,6 +20,7 @@ from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, inaccuracy, independent, volume
 from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
+from fixture_design.design.pressing import least_bound, least_of_all, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
 from fixture_design.design.ways import Progress
@@ -43,20 +44,27 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
         progress(f"way out {number + 1} of {len(regions)}", number / len(regions))
         best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
     least = min((region.bound for region in regions), default=None)
-    known = best is not None and not (problem.several and redundancy(problem, best.locators))
-    return Outcome(
-        best,
-        least,
-        complete,
-        _best_accuracy(problem, regions, len(best.clamps)) if best is not None and known else None,
-    )
+    if best is None:
+        return Outcome(best, least, complete)
+    return _with_bounds(problem, best, regions, least, complete)
 
 
 def search_region(problem: Problem, region: Region, seed: int, restarts: int = RESTARTS) -> Outcome:
     """The best layout of one region, with its bounds."""
     best = _better_within(problem, region, np.random.default_rng(seed), None, restarts)
-    exact = None if best is None else _best_accuracy(problem, [region], len(best.clamps))
-    return Outcome(best, region.bound, True, exact)
+    return (
+        Outcome(None, region.bound, True) if best is None else _with_bounds(problem, best, [region], region.bound, True)
+    )
+
+
+def _with_bounds(
+    problem: Problem, best: Found, regions: Sequence[Region], least: int | None, complete: bool
+) -> Outcome:
+    """With bounds over all regions that might do with as few clamps; none of accuracy where rows are redundant."""
+    left = [region for region in regions if region.bound <= len(best.clamps)]
+    preload, here = _best_preload(problem, left), _best_preload_here(problem, best)
+    redundant = problem.several and redundancy(problem, best.locators) > 0
+    return Outcome(best, least, complete, None if redundant else _best_accuracy(problem, left), preload, here)
 
 
 def _whatever_closes(problem: Problem, seed: int) -> Outcome:
@@ -64,23 +72,25 @@ def _whatever_closes(problem: Problem, seed: int) -> Outcome:
     chosen, least = closing_elements(problem, seed)
     least += len(problem.kept)
     if chosen is None:
-        return Outcome(None, 0, True, None, least)
+        return Outcome(None, 0, True, least_elements=least)
     was = np.isin(chosen, problem.spare)
     new = chosen[~was]
     clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[-1:]])
     locators = np.concatenate([problem.kept[: len(problem.locators)], new[:-1]])
     margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
-    return Outcome(Found(locators, clamps, None, accuracy(problem, locators), margin), 0, True, None, least)
+    found = Found(locators, clamps, None, accuracy(problem, locators), margin)
+    return Outcome(found, 0, True, least_elements=least)
 
 
 def _better_within(
     problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, restarts: int = RESTARTS
 ) -> Found | None:
     """The best of one region, or ``best`` if that is better."""
-    for _ in range(restarts):
+    for restart in range(restarts):
         if problem.cancelled():
             break
-        for locators, clamps in _sets(problem, region, rng, best):
+        first = _reacting(problem, region, rng) if restart == 0 else None
+        for locators, clamps in _sets(problem, region, rng, best, first):
             found = _finished(problem, region, locators, clamps)
             if best is None or found.score(problem.objective) < best.score(problem.objective):
                 best = found
@@ -88,16 +98,16 @@ def _better_within(
 
 
 def _sets(
-    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None
+    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, locators: Indices | None
 ) -> Iterator[tuple[Indices, Indices]]:
-    """Locators after exchanges with clamps for them, if these could be better than what is there; then, as long as
-    there are more clamps than the bound says, clamps first and locators for them.
+    """Locators, by default after exchanges, with clamps for them, if these could be better than what is there; then,
+    as long as there are more clamps than the bound says, clamps first and locators for them.
     """
     short = best is None or len(best.clamps) > region.bound
-    locators = _located(problem, region, rng)
+    locators = _located(problem, region, rng) if locators is None else locators
     if locators is None:
         return
-    hoped = Found(locators, problem.new[: region.bound], region.out, accuracy(problem, locators), np.inf)
+    hoped = Found(locators, problem.new[: region.bound], region.out, accuracy(problem, locators), np.inf, 0.0)
     if best is None or hoped.score(problem.objective) < best.score(problem.objective):
         clamps = clamps_for(problem, locators)
         if clamps is not None:
@@ -105,6 +115,25 @@ def _sets(
             short = short and len(clamps) > region.bound
     if short and problem.closes == "without friction":
         yield from _turned_round(problem, region, rng)
+
+
+def _reacting(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
+    """Locators that the least preloads would press, where preloads count before accuracy; else None."""
+    if problem.pushing is None or not _preload_before_accuracy(problem):
+        return None
+    _, reacting = least_bound(problem, problem.pushing, region.pool)
+    kept = problem.rows_of(problem.locators)
+    freedoms = problem.candidates.freedoms
+    rows = independent(problem.rows, problem.rows_of(reacting), kept, rng, freedoms)
+    rows = independent(problem.rows, problem.rows_of(region.pool), rows, rng, freedoms)
+    if len(rows) < freedoms or problem.limits.spacing > 0:
+        return None
+    return np.union1d(problem.owners(rows), np.array(problem.locators, dtype=np.int64))
+
+
+def _preload_before_accuracy(problem: Problem) -> bool:
+    order = problem.objective
+    return "preload" in order and ("accuracy" not in order or order.index("preload") < order.index("accuracy"))
 
 
 def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
@@ -197,7 +226,15 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
         staying = np.concatenate([locators, clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]])
         moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing, problem.standing)
         clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
-    return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin)
+    preload, holds = 0.0, True
+    if problem.pushing is not None:
+        pressed = pressed_clamps(problem, problem.pushing, locators, clamps)
+        if _preload_before_accuracy(problem):
+            locators, pressed = pressed_together(
+                problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
+            )
+        clamps, margin, preload, holds = pressed.clamps, pressed.margin, pressed.total, pressed.holds
+    return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin, preload, holds)
 
 
 def _by_face(problem: Problem, locators: Indices) -> Indices:
@@ -207,17 +244,32 @@ def _by_face(problem: Problem, locators: Indices) -> Indices:
     return locators[order]
 
 
-def _best_accuracy(problem: Problem, regions: Sequence[Region], clamps: int) -> float:
+def _best_accuracy(problem: Problem, regions: Sequence[Region]) -> float:
     """A bound over all regions that might do with so few clamps."""
     least = np.inf
     for region in regions:
-        if region.bound <= clamps:
-            pool = np.concatenate([problem.rows_of(region.pool), problem.rows_of(problem.locators)])
-            if problem.features is not None and problem.candidates.freedoms == problem.candidates.dimension:
-                least = min(least, least_error(problem.rows, problem.features, pool))
-            else:
-                least = min(least, 1.0 / largest_volume(problem.rows[pool]))
+        pool = np.concatenate([problem.rows_of(region.pool), problem.rows_of(problem.locators)])
+        if problem.features is not None and problem.candidates.freedoms == problem.candidates.dimension:
+            least = min(least, least_error(problem.rows, problem.features, pool))
+        else:
+            least = min(least, 1.0 / largest_volume(problem.rows[pool]))
     return float(least)
+
+
+def _best_preload_here(problem: Problem, best: Found) -> float | None:
+    """The same for clamps anywhere against the locators that were found."""
+    if problem.pushing_bound is None:
+        return None
+    return least_of_all(problem, problem.pushing_bound, best.locators, best.clamps)[1].total
+
+
+def _best_preload(problem: Problem, regions: Sequence[Region]) -> float | None:
+    """The same for preloads; None where nobody asks, or the search was stopped."""
+    program = problem.pushing_bound
+    if program is None or problem.cancelled():
+        return None
+    bounds = [least_bound(problem, program, region.pool)[0] for region in regions]
+    return None if None in bounds else min(bound for bound in bounds if bound is not None)
 
 
 def accuracy(problem: Problem, locators: Indices) -> float:

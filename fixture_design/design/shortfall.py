@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import fewest_locators
 from fixture_design.design.problem import Problem
@@ -26,15 +28,28 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
 
 
 def refused(task: Task, found: Found) -> bool:
-    """Whether there are more elements than there may be."""
+    """Whether there are more elements than there may be, or they cannot hold what has to be held."""
+    if not found.holds:
+        return True
     limits = task.limits
     many_locators = limits.locators is not None and len(found.locators) > limits.locators
     return many_locators or (limits.clamps is not None and len(found.clamps) > limits.clamps)
 
 
+def _not_held(outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
+    """No clamps hold the loads within the limits of their preload."""
+    if outcome.best_preload == np.inf and outcome.complete:
+        reason = "no layout among these candidates holds the loads within the limits of the preload"
+        return DesignResult(Answer.NO, None, steps=start.steps, bound=bound, reason=reason)
+    reason = "no layout was found that holds the loads within the limits of the preload"
+    return DesignResult(Answer.UNDECIDED, None, steps=start.steps, bound=bound, reason=reason)
+
+
 def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
     """Why there is none, and whether that is proven."""
     limits, steps = problem.limits, start.steps
+    if outcome.found is not None and not outcome.found.holds:
+        return _not_held(outcome, bound, start)
     if bound is None:
         reason = "no straight way out leaves enough places for locators that determine the part"
         answer = Answer.NO if outcome.complete else Answer.UNDECIDED

@@ -46,7 +46,7 @@ def begun(task: Task, candidates: Candidates, ways: Ways, leaves: bool, keep_all
         leaves: whether the part must come out of the locators in a straight line.
         keep_all: whether to keep what does no harm, or only what is ``fixed``.
     """
-    found = _elements(task.start, ways) if task.start is not None else []
+    found = elements_of(task.start, ways) if task.start is not None else []
     everything = candidates.with_elements(found)
     first = len(candidates)
     numbers = {first + k: element for k, (element, _) in enumerate(found)}
@@ -62,7 +62,7 @@ def begun(task: Task, candidates: Candidates, ways: Ways, leaves: bool, keep_all
     return Start(everything, kept.locators, tuple(others), tuple(spare), steps, kept.conflict)
 
 
-def _elements(layout: Layout, ways: Ways) -> list[tuple[Element, Sequence[Contact]]]:
+def elements_of(layout: Layout, ways: Ways) -> list[tuple[Element, Sequence[Contact]]]:
     """Every element of a layout with its contacts; bodies and contacts given outright as elements that stay."""
     if not (layout.elements or layout.bodies or layout.contacts):
         return []

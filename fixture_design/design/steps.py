@@ -19,21 +19,22 @@ _STRAIGHT = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """One element that came or left.
+    """One element that came, left, moved, or pushes with something else.
 
     Attributes:
         action: "added" or "removed".  element: its name.
         why: "unnoticed": no locator noticed ``motion``; "free": nothing stopped it; "bound": the elements of
             ``circuit`` constrained both ways; "twice": they located the same thing; "in the way": the part could not
-            come out past it; "spare": the others do without it.
-        motion: [dx; dtheta] about W's origin; None where there is none to tell.
+            come out past it; "spare": the others do without it; "loads": it takes another preload.
+        motion: [dx; dtheta] about W's origin; None where there is none to tell.  preload: the new one [N].
     """
 
-    action: Literal["added", "removed"]
+    action: Literal["added", "removed", "moved", "preloaded"]
     element: str
-    why: Literal["unnoticed", "free", "bound", "twice", "in the way", "spare"]
+    why: Literal["unnoticed", "free", "bound", "twice", "in the way", "spare", "loads"]
     motion: Vector | None = None
     circuit: tuple[str, ...] = ()
+    preload: float | None = None
 
 
 def in_world(motion: Vector, scale: Scale) -> Vector:
@@ -50,13 +51,13 @@ def additions(problem: Problem, locators: Indices, clamps: Indices, names: dict[
     """
     steps, here = [], [*problem.locators]
     for locator in (int(index) for index in locators if index not in problem.locators):
-        motion = _unnoticed(problem, here, locator)
+        motion = unnoticed(problem, here, locator)
         steps.append(_step(problem, names[locator], "unnoticed", motion))
         here.append(locator)
     before = [int(index) for index in clamps if problem.candidates.elements[index] is not None]
     here += before
     for clamp in (int(index) for index in clamps if index not in before):
-        motion = _stopped(problem, here, clamp)
+        motion = stopped(problem, here, clamp)
         steps.append(_step(problem, names[clamp], "free", motion))
         here.append(clamp)
     return steps
@@ -66,7 +67,7 @@ def _step(problem: Problem, name: str, why: Literal["unnoticed", "free"], motion
     return Step("added", name, why, None if motion is None else in_world(motion, problem.candidates.scale))
 
 
-def _unnoticed(problem: Problem, here: list[int], locator: int) -> Vector | None:
+def unnoticed(problem: Problem, here: list[int], locator: int) -> Vector | None:
     """A motion that no locator so far notices, and this one does: a straight one if there is one, else the one that it
     notices most.
     """
@@ -88,7 +89,7 @@ def _off(vector: Vector, rows: Rows) -> Vector:
     return vector - vector @ basis.T @ basis
 
 
-def _stopped(problem: Problem, here: list[int], clamp: int) -> Vector | None:
+def stopped(problem: Problem, here: list[int], clamp: int) -> Vector | None:
     """A motion that is free before this clamp and that it stops: a straight one if there is one; None without any."""
     rows = flat(problem.closing_rows, here) if here else np.zeros((1, problem.candidates.dimension))
     p = problem.candidates.points.shape[2]

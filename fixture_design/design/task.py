@@ -67,12 +67,14 @@ class Limits:
     Attributes:
         spacing: least distance between two elements [m].
         loading: the direction in W in which the part goes in; it comes out the other way. None leaves it open.
+        preload: least and most that a new clamp may push with [N]; None for as much as it takes.
     """
 
     locators: int | None = None
     clamps: int | None = None
     spacing: float = 0.0
     loading: Point | None = None
+    preload: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol, runtime_checkable
 
-from fixture_design.arrays import Mask, Point, Points
+from fixture_design.arrays import Mask, Point, Points, Vector
 from fixture_design.contacts import Contact, Scale
 from fixture_design.design.candidates import Spots
 from fixture_design.design.task import CandidateRules
-from fixture_design.layout import Element, Layout, Stem, Verdict
+from fixture_design.layout import Element, Layout, Part, Stem, Verdict
 
 #: Told what is being done, in words, and what part of it is behind, from 0 to 1.
 Progress = Callable[[str, float], None]
+
+
+#: [f; m] about W's origin [N, N m]: the weight, and each load, or row of a load path.
+Wrenches = tuple[Vector, Sequence[Vector]]
 
 
 @runtime_checkable
@@ -64,6 +68,10 @@ class Ways(Protocol):
         """The holes and slots that pins could be in."""
         ...
 
+    def wrenches(self, layout: Layout) -> Wrenches | str:
+        """The weight and the loads that act on a layout's part; or why the weight is not known."""
+        ...
+
     def contacts(self, layout: Layout) -> Sequence[Contact]:
         """The contacts that a layout's elements have."""
         ...
@@ -71,3 +79,10 @@ class Ways(Protocol):
     def verify(self, layout: Layout) -> Verdict:
         """The verdict on a layout."""
         ...
+
+
+def ways_of(part: Part, surface_gap: float) -> Ways:
+    """Geometry and verification of a part in a file, or of a polygon."""
+    from fixture_design.verification.surface import PartSurface  # noqa: PLC0415 - only where no fake is given
+
+    return PartSurface(part, surface_gap)

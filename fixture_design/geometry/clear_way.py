@@ -93,22 +93,22 @@ class Surroundings:
 
     def _meetings(self, direction: Point) -> Iterator[Meeting]:
         frame = Frame.along(self._in_part(direction))
-        corners = frame.seen(self._corners)
-        part = Faces.facing(corners, False)
+        view = _View(frame, frame.seen(self._corners))
         quick_first = sorted(self.barriers, key=lambda barrier: isinstance(barrier, SolidBarrier))
-        meetings = (self._with(barrier, frame, corners, part) for barrier in quick_first)
+        meetings = (self._with(barrier, view) for barrier in quick_first)
         return (meeting for meeting in meetings if meeting is not None)
 
-    def _with(self, barrier: Barrier, frame: Frame, corners: Triples, part: Faces) -> Meeting | None:
+    def _with(self, barrier: Barrier, view: _View) -> Meeting | None:
+        frame = view.frame
         match barrier:
             case PointBarrier():
-                met = self._point(barrier, frame, corners, part)
+                met = self._point(barrier, view)
                 certain = barrier.depth <= self.gap
             case BallBarrier():
-                met = self._ball(barrier, frame, corners)
+                met = self._ball(barrier, view)
                 certain = barrier.depth <= self.gap
             case SolidBarrier():
-                met = self._solid(barrier, frame, corners, part)
+                met = self._solid(barrier, view)
                 certain = not barrier.assumed
         if met is None:
             return None
@@ -116,27 +116,25 @@ class Surroundings:
         point = self.X_WP.points(frame.back(seen)[None])[0]
         return Meeting(Obstacle(barrier.name, after, point, self.X_WP.vectors(frame.axes[2:])[0]), certain)
 
-    def _point(
-        self, barrier: PointBarrier, frame: Frame, corners: Triples, part: Faces
-    ) -> tuple[float, Vector3] | None:
-        seen, allowed = frame.seen(barrier.point), self.gap + barrier.depth
+    def _point(self, barrier: PointBarrier, view: _View) -> tuple[float, Vector3] | None:
+        seen, allowed = view.frame.seen(barrier.point), self.gap + barrier.depth
         if barrier.depth > self.gap and not barrier.measured:
             return 0.0, seen
         angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
         columns = seen[:2] + allowed * np.vstack([[0.0, 0.0], np.column_stack([np.cos(angles), np.sin(angles)])])
-        lower = _near(part, seen, allowed)
+        lower = view.back.near(seen, allowed)
         column, face = lower.over(columns)
         below = lower.heights(face, columns[column]) < seen[2] - allowed
         if len(np.unique(column[below])) < len(columns):
             return None
-        tops = _near(Faces.facing(corners, True), seen, allowed)
+        tops = view.ahead.near(seen, allowed)
         _, face = tops.over(seen[None, :2])
         ways = seen[2] - tops.heights(face, np.tile(seen[:2], (len(face), 1)))
         return float(ways[ways >= 0].min(initial=np.inf)) if (ways >= 0).any() else 0.0, seen
 
-    def _ball(self, barrier: BallBarrier, frame: Frame, corners: Triples) -> tuple[float, Vector3] | None:
+    def _ball(self, barrier: BallBarrier, view: _View) -> tuple[float, Vector3] | None:
         """The ball goes the other way: how near its centre comes to the part's edges, or through a face."""
-        center = frame.seen(barrier.center)
+        frame, center = view.frame, view.frame.seen(barrier.center)
         least = barrier.radius - self.gap - barrier.depth
         edges = frame.seen(self._edges)
         near = (edges[:, :, :2].min(axis=1) <= center[:2] + least).all(axis=1)
@@ -152,7 +150,7 @@ class Surroundings:
                 rise = float(np.sqrt(max(0.0, barrier.radius**2 - float(off[:2] @ off[:2]))))
                 after = max(0.0, -float(off[2]) - rise)
                 meetings.append((after, point + np.array([0.0, 0.0, after])))
-        ahead = _near(Faces.facing(corners, True), center, 0.0)
+        ahead = view.ahead.near(center, 0.0)
         column, face = ahead.over(center[None, :2])
         heights = ahead.heights(face, np.tile(center[:2], (len(column), 1)))
         for height in heights[heights < center[2] - least].tolist():
@@ -160,22 +158,20 @@ class Surroundings:
             meetings.append((after, np.array([center[0], center[1], height + after])))
         return min(meetings, key=lambda meeting: meeting[0]) if meetings else None
 
-    def _solid(
-        self, barrier: SolidBarrier, frame: Frame, corners: Triples, part: Faces
-    ) -> tuple[float, Vector3] | None:
+    def _solid(self, barrier: SolidBarrier, view: _View) -> tuple[float, Vector3] | None:
         import shapely
 
-        seen = frame.seen(barrier.corners)
+        seen = view.frame.seen(barrier.corners)
         ahead = Faces.facing(seen, True)
-        region = region_above(ahead, part, self.gap + 2 * (barrier.depth or 0.0))
+        region = region_above(ahead, view.back, self.gap + 2 * (barrier.depth or 0.0))
         if region is not None and barrier.depth is None and (depth := self._depth(barrier)) > 0:
-            region = region_above(ahead, part, self.gap + 2 * depth)
+            region = region_above(ahead, view.back, self.gap + 2 * depth)
         if region is None:
             return None
         outline = shapely.get_coordinates(region)
         inside = shapely.get_coordinates([shapely.point_on_surface(one) for one in shapely.get_parts(region)])
         columns = np.vstack([inside, outline[:: 1 + len(outline) // _COLUMNS]])
-        return nearest_meeting(columns, seen, corners)
+        return nearest_meeting(columns, seen, view.corners)
 
     def _depth(self, barrier: SolidBarrier) -> float:
         """How deep a body is in the part at the start, by facets: those of round surfaces cut into each other."""
@@ -206,11 +202,20 @@ class Surroundings:
         return self.X_WP.inverse().vectors(direction[None])[0]
 
 
-def _near(faces: Faces, seen: Vector3, within: float) -> Faces:
-    """Faces with columns near that of a point."""
-    flat = faces.corners[:, :, :2]
-    near = (flat.min(axis=1) <= seen[:2] + within).all(axis=1) & (flat.max(axis=1) >= seen[:2] - within).all(axis=1)
-    return faces.some(near)
+@dataclass(frozen=True, eq=False)
+class _View:
+    """The part's triangles along one direction, looked at once for all that may be in the way."""
+
+    frame: Frame
+    corners: Triples
+
+    @cached_property
+    def back(self) -> Faces:
+        return Faces.facing(self.corners, False)
+
+    @cached_property
+    def ahead(self) -> Faces:
+        return Faces.facing(self.corners, True)
 
 
 def _reach(barrier: Barrier, t: Vector3) -> float:

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from fixture_design.arrays import Indices, Weights, cross_products
+from fixture_design.arrays import Indices, Points, Weights, cross_products
 from fixture_design.contacts import tangents
 from fixture_design.geometry.shapes import Vector3
 
@@ -80,12 +80,31 @@ class Faces:
         return Faces(self.corners[chosen])
 
     @cached_property
-    def low(self) -> Weights:
-        return self.corners[:, :, 2].min(axis=1, initial=np.inf)
+    def lowest(self) -> Points:
+        """The least u, v and h of each, shape (n, 3)."""
+        first, second, third = np.moveaxis(self.corners, 1, 0)  # faster than a minimum along an axis of three
+        return np.minimum(np.minimum(first, second), third)
 
     @cached_property
+    def highest(self) -> Points:
+        """The largest u, v and h of each, shape (n, 3)."""
+        first, second, third = np.moveaxis(self.corners, 1, 0)
+        return np.maximum(np.maximum(first, second), third)
+
+    @property
+    def low(self) -> Weights:
+        return self.lowest[:, 2]
+
+    @property
     def high(self) -> Weights:
-        return self.corners[:, :, 2].max(axis=1, initial=-np.inf)
+        return self.highest[:, 2]
+
+    def near(self, seen: Vector3, within: float) -> Faces:
+        """Those with columns near that of a point."""
+        low, high = self.lowest, self.highest
+        near = (low[:, 0] <= seen[0] + within) & (low[:, 1] <= seen[1] + within)
+        near &= (high[:, 0] >= seen[0] - within) & (high[:, 1] >= seen[1] - within)
+        return self.some(near)
 
     @cached_property
     def slopes(self) -> Columns:

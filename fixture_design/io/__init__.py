@@ -1,5 +1,8 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from fixture_design.io.assembly_file import assembly_from_data, read_assembly
 from fixture_design.io.csv_export import write_csv
 from fixture_design.io.design_record import design_to_dict
@@ -10,9 +13,21 @@ from fixture_design.io.layout_file import layout_from_data, layout_text, read_la
 from fixture_design.io.places import Place
 from fixture_design.io.problems import ContentError
 from fixture_design.io.schemas import json_schema, schema_names
-from fixture_design.io.task_file import TASK_ENDINGS, read_task, task_of_part
+from fixture_design.io.task_file import TASK_ENDINGS, read_task, read_task_or_layout, task_of_part
 from fixture_design.io.urdf_export import write_urdf
 from fixture_design.io.verdict_record import error_record, verdict_to_dict
+
+if TYPE_CHECKING:
+    from fixture_design.io.classifier_file import classifier_to_dict, read_classifier, write_classifier
+    from fixture_design.io.log_file import read_log
+
+#: Names that are loaded when first asked for: a tenth of any start otherwise.
+_LATER = {
+    "classifier_to_dict": "classifier_file",
+    "read_classifier": "classifier_file",
+    "read_log": "log_file",
+    "write_classifier": "classifier_file",
+}
 
 __all__ = [
     "TASK_ENDINGS",
@@ -20,6 +35,7 @@ __all__ = [
     "Document",
     "Place",
     "assembly_from_data",
+    "classifier_to_dict",
     "design_to_dict",
     "document_of",
     "dumps",
@@ -31,16 +47,26 @@ __all__ = [
     "line_document",
     "read_assembly",
     "read_bytes",
+    "read_classifier",
     "read_document",
     "read_graph",
     "read_layout",
+    "read_log",
     "read_task",
+    "read_task_or_layout",
     "schema_names",
     "task_of_part",
     "verdict_to_dict",
+    "write_classifier",
     "write_csv",
     "write_graph",
     "write_graphml",
     "write_layout",
     "write_urdf",
 ]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_LATER[name]}"), name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fixture_design.design import Bound, DesignResult, Step
+from fixture_design.design import Bound, ChangeBound, DesignResult, Step
 from fixture_design.io.layout_writing import layout_data
 from fixture_design.io.verdict_record import verdict_to_dict
 
@@ -21,10 +21,14 @@ def design_to_dict(result: DesignResult, folder: Path) -> Data:
         "verdict": None if result.verdict is None else verdict_to_dict(result.verdict),
         "steps": [_step(step) for step in result.steps],
         "bound": None if result.bound is None else _bound(result.bound),
+        "changes": None if result.changes is None else _changes(result.changes),
         "out": _numbers(result.out),
         "accuracy": result.accuracy,
         "best_accuracy": result.best_accuracy,
         "margin": result.margin,
+        "preload": result.preload,
+        "best_preload": result.best_preload,
+        "best_preload_here": result.best_preload_here,
         "free": _numbers(result.free),
         "notes": list(result.notes),
     }
@@ -34,6 +38,8 @@ def _step(step: Step) -> Data:
     data: Data = {"action": step.action, "element": step.element, "why": step.why}
     if step.motion is not None:
         data["motion"] = _numbers(step.motion)
+    if step.preload is not None:
+        data["preload"] = step.preload
     if step.circuit:
         data["circuit"] = list(step.circuit)
     return data
@@ -50,6 +56,12 @@ def _bound(bound: Bound) -> Data:
         "complete": bound.complete,
         "candidates": bound.candidates,
     }
+
+
+def _changes(changes: ChangeBound) -> Data:
+    return {
+        "found": changes.found, "bound": changes.bound, "proven": changes.proven, "complete": changes.complete,
+    }  # fmt: skip
 
 
 def _numbers(values: object) -> list[float] | None:

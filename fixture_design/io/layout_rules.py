@@ -34,7 +34,7 @@ def layout_problems(layout: LayoutRecord) -> Iterator[Problem]:
         yield Problem(("bodies",), "bodies are spatial", expected="`contacts` or `elements` where `space: planar`")
     yield from _requirement_problems(layout)
     if layout.sweep is not None and layout.sweep.friction is not None:
-        yield from _order_problems(layout.sweep.friction, ("sweep", "friction"))
+        yield from order_problems(layout.sweep.friction, ("sweep", "friction"))
     yield from name_problems(layout)
     yield from coordinate_problems(layout)
 
@@ -86,7 +86,7 @@ def _element_problems(element: ElementRecord, path: KeyPath, planar: bool) -> It
         if getattr(element, key) is not None and element.role != "clamp":
             yield Problem((*path, key), f"{owner} {what}; only clamps do", expected=f"`role: clamp`, or no `{key}`")
     if element.limits is not None:
-        yield from _order_problems(element.limits, (*path, "limits"))
+        yield from order_problems(element.limits, (*path, "limits"))
     if element.tip is not None:
         yield from tip_problems(element.tip, (*path, "tip"), owner)
     has_pin = element.tip is not None and element.tip.pin is not None
@@ -97,7 +97,8 @@ def _element_problems(element: ElementRecord, path: KeyPath, planar: bool) -> It
         yield Problem((*path, "axis"), f"{owner} has an axis; {reason}", expected="no `axis` here")
 
 
-def _order_problems(limits: tuple[float, ...], path: KeyPath) -> Iterator[Problem]:
+def order_problems(limits: tuple[float, ...], path: KeyPath) -> Iterator[Problem]:
+    """That the smaller one of two numbers comes first."""
     low, high = limits
     if low > high:
         yield Problem(path, f"{path[-1]!r} is out of order", f"[{low:g}, {high:g}]", "the smaller one first")

@@ -40,6 +40,7 @@ NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
 #: Numbers that sums and products are made of: not so large that these overflow, or that nobody can mean them.
 Newtons = Annotated[float, Field(allow_inf_nan=False, ge=-MOST_FORCE, le=MOST_FORCE)]
 Push = Annotated[float, Field(allow_inf_nan=False, ge=0, le=MOST_FORCE)]
+PushLimits = Annotated[tuple[Push, ...], Field(strict=False, min_length=2, max_length=2)]
 Mass = Annotated[float, Field(allow_inf_nan=False, gt=0, le=MOST_MASS)]
 Acceleration = Annotated[float, Field(allow_inf_nan=False, ge=-MOST_GRAVITY, le=MOST_GRAVITY)]
 Stiffness = Annotated[float, Field(allow_inf_nan=False, gt=0, le=MOST_STIFFNESS)]

@@ -26,6 +26,7 @@ from fixture_design.io.record_types import (
     Place,
     Positive,
     Push,
+    PushLimits,
     Record,
     Size,
     Stiffness,
@@ -121,9 +122,7 @@ class ElementRecord(Record):
     tolerance: Deviation | None = Field(None, description="of its position along the normal [length]")
     friction: Friction | None = Field(None, description="coefficient, default: the layout's")
     preload: Push | None = Field(None, description="what a clamp pushes with, along the inward normal [N]")
-    limits: Annotated[tuple[Push, ...], Field(strict=False, min_length=2, max_length=2)] | None = Field(
-        None, description="smallest and largest preload that design may choose [N]"
-    )
+    limits: PushLimits | None = Field(None, description="smallest and largest preload that design may choose [N]")
     fixed: bool = Field(False, description="design leaves it where it is")
     stiffness: Stiffness | None = Field(None, description="of the contact [N/m], whatever the units")
 

@@ -12,7 +12,7 @@ from fixture_design.io.task_records import TaskRecord
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-_KINDS = ("assembly", "graph", "layout", "task", "verdict")
+_KINDS = ("assembly", "classifier", "graph", "layout", "task", "verdict")
 
 
 def schema_names() -> list[str]:
@@ -21,7 +21,7 @@ def schema_names() -> list[str]:
 
 
 def json_schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of a kind of file: "assembly", "graph", "layout", "task" or "verdict".
+    """The JSON Schema of a kind of file: "assembly", "classifier", "graph", "layout", "task" or "verdict".
 
     A schema tells keys, types and ranges; what depends on several keys (numbers of coordinates, names) only reading
     a file tells.
@@ -50,6 +50,10 @@ def _record(name: str) -> Any:
         from fixture_design.io.assembly_records import AssemblyRecord  # noqa: PLC0415 - only where asked for
 
         return AssemblyRecord
+    if name == "classifier":
+        from fixture_design.io.classifier_records import ClassifierRecord  # noqa: PLC0415 - as above
+
+        return ClassifierRecord
     if name == "graph":
         from fixture_design.io.graph_records import GraphRecord  # noqa: PLC0415 - as above
 

@@ -11,12 +11,13 @@ import numpy as np
 from fixture_design.arrays import read_only
 from fixture_design.design import CandidateRules, Grid, Limits, PinRules, Task
 from fixture_design.errors import FileFormatError
-from fixture_design.io.documents import read_document
+from fixture_design.io.documents import Document, read_document
 from fixture_design.io.layout_file import read_layout
 from fixture_design.io.layout_places import layout_places
 from fixture_design.io.layout_reading import layout_from_record, metres_of, tip_from_record
 from fixture_design.io.plain_words import validated
 from fixture_design.io.problems import content_error
+from fixture_design.io.records import LAYOUT_SCHEMA
 from fixture_design.io.schema_key import require_schema
 from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, PinsRecord, StemRecord, TaskRecord
 from fixture_design.io.task_rules import as_layout, task_problems
@@ -34,7 +35,21 @@ def read_task(path: str | Path) -> Task:
             of another space.
     """
     path = Path(path)
+    return _task(read_document(path), path)
+
+
+def read_task_or_layout(path: str | Path) -> Task | Layout:
+    """The task, or the layout, in a file.
+
+    Raises:
+        FileFormatError: as `read_task` and `read_layout` do.
+    """
+    path = Path(path)
     document = read_document(path)
+    return read_layout(path) if document.values.get("schema") == LAYOUT_SCHEMA else _task(document, path)
+
+
+def _task(document: Document, path: Path) -> Task:
     require_schema(document, "task")
     record = validated(TaskRecord, document)
     if problems := list(task_problems(record)):
@@ -114,4 +129,5 @@ def _stem(stem: StemRecord | None, metres: Callable[[float], float]) -> StemSize
 
 def _limits(limits: LimitsRecord, task: TaskRecord) -> Limits:
     loading = None if limits.loading is None else read_only(limits.loading)
-    return Limits(limits.locators, limits.clamps, metres_of(task.units)(limits.spacing), loading)
+    preload = None if limits.preload is None else (limits.preload[0], limits.preload[1])
+    return Limits(limits.locators, limits.clamps, metres_of(task.units)(limits.spacing), loading, preload)

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from fixture_design.design import Objective
-from fixture_design.io.record_types import Coordinates, Friction, NotNegative, Positive, Record, Text
+from fixture_design.io.record_types import Coordinates, Friction, NotNegative, Positive, PushLimits, Record, Text
 from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField, or_point
 from fixture_design.layout import Space
 
@@ -84,6 +84,7 @@ class LimitsRecord(Record):
     clamps: _Count | None = Field(None, description="at most")
     spacing: NotNegative = Field(0.0, description="least distance between two elements [length]")
     loading: Coordinates | None = Field(None, description="direction in W in which the part goes in")
+    preload: PushLimits | None = Field(None, description="least and most that a new clamp may push with [N]")
 
 
 class TaskRecord(Record):

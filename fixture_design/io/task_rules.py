@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from fixture_design.io.layout_rules import given_keys, layout_problems, tip_problems
+from fixture_design.io.layout_rules import given_keys, layout_problems, order_problems, tip_problems
 from fixture_design.io.places import KeyPath
 from fixture_design.io.problems import Problem
 from fixture_design.io.records import LAYOUT_SCHEMA, LayoutRecord, TipRecord
@@ -87,6 +87,8 @@ def _limit_problems(limits: LimitsRecord, planar: bool) -> Iterator[Problem]:
         yield from _count_problems(limits.loading, ("limits", "loading"), planar)
         if not any(limits.loading):
             yield Problem(("limits", "loading"), "'loading' has zero length", expected="a direction")
+    if limits.preload is not None:
+        yield from order_problems(limits.preload, ("limits", "preload"))
 
 
 def _count_problems(values: tuple[float, ...], path: KeyPath, planar: bool) -> Iterator[Problem]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -14,22 +15,31 @@ def write_text(path: Path, text: str) -> None:
     """Replaces the file by ``text`` (UTF-8); what was there stays if that fails. A link's target is replaced.
 
     Raises:
+        FileFormatError: as `write_pieces`.
+    """
+    write_pieces(path, [text])
+
+
+def write_pieces(path: Path, pieces: Iterable[str]) -> None:
+    """Likewise by pieces of text one after the other, which are not held together.
+
+    Raises:
         FileFormatError: the folder is not there, not permitted, the disk is full, or ``path`` is a folder.
     """
     target = Path(os.path.realpath(path))
     try:
         if target.is_dir():
             raise IsADirectoryError(f"{path} is a folder")
-        _replace(target, text)
+        _replace(target, pieces)
     except OSError as cause:
         raise FileFormatError(f"the file cannot be written: {cause.strerror or cause}", source=path) from cause
 
 
-def _replace(target: Path, text: str) -> None:
+def _replace(target: Path, pieces: Iterable[str]) -> None:
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
     try:
         with open(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+            file.writelines(pieces)
             file.flush()
             os.fsync(file.fileno())
         os.chmod(temporary, _mode(target))

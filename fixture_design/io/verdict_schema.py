@@ -198,6 +198,13 @@ class ErrorRecord(Record):
     message: str
 
 
+class FailureRunRecord(Record):
+    """What in a batch the error is about."""
+
+    version: str
+    input: str = Field(description="SHA-256 of the layout's text and of the files it names")
+
+
 class FailureRecord(Record):
     """The object that stands for a layout that could not be verified, in a batch."""
 
@@ -205,3 +212,4 @@ class FailureRecord(Record):
     name: str
     source: str | None
     error: ErrorRecord
+    run: FailureRunRecord | None = None

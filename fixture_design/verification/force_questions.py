@@ -78,7 +78,7 @@ def _without_preload(contacts: Sequence[Contact], preloads: Mapping[str, float])
 
 def acting_weight(layout: Layout, group: Group, found: FoundContacts) -> Vector | str:
     """The weight as a wrench about W's origin, zero where gravity does not act on the group; or why it is not known."""
-    weight = weight_of(layout if group.gravity else replace(layout, gravity=None), found)
+    weight = weight_of(layout if group.gravity else replace(layout, gravity=None), found.geometry)
     return weight if isinstance(weight, str) else weight.wrench
 
 

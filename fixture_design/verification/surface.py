@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from fixture_design.arrays import Mask, Point, Points
+from fixture_design.arrays import Mask, Point, Points, Vector
 from fixture_design.contacts import Contact, Scale
 from fixture_design.errors import GeometryError, UnsupportedError, looking_at
-from fixture_design.layout import Element, Layout, Part, Stem, Verdict
+from fixture_design.layout import Element, Layout, Part, Stem, Verdict, groups_of
+from fixture_design.verification.load_paths import load_rows
 from fixture_design.verification.use import USE_QUESTIONS
 from fixture_design.verification.verify import QUESTIONS, contacts_of, verify
+from fixture_design.verification.weight import weight_of
 
 if TYPE_CHECKING:
     from fixture_design.geometry import Hole, PartGeometry, Polygon, SurfacePoints
@@ -80,6 +82,18 @@ class PartSurface:
         """Centre of the part's box in W and half its diagonal, as margins are reported."""
         center = self.part.pose.points(np.asarray(self.geometry.box_center)[None])[0]
         return Scale(center, self.geometry.half_diagonal)
+
+    def wrenches(self, layout: Layout) -> tuple[Vector, Sequence[Vector]] | str:
+        """The weight and the loads [f; m] about W's origin [N, N m]; or why the weight is not known.
+
+        Raises:
+            FileFormatError: a load path cannot be read.
+        """
+        weight = weight_of(layout, self.geometry)
+        if isinstance(weight, str):
+            return weight
+        everything = groups_of(layout, ())[1]
+        return weight.wrench, [row.wrench for row in load_rows(layout, everything)]
 
     def contacts(self, layout: Layout) -> Sequence[Contact]:
         return contacts_of(layout, self.geometry).contacts

@@ -20,7 +20,7 @@ UseQuestion = Callable[[Layout, Group, FoundContacts, Tolerances], Finding]
 
 def _accurate(layout: Layout, group: Group, found: FoundContacts, tolerances: Tolerances) -> Finding:
     def weight(of: Layout) -> Vector | None:
-        known = weight_of(of, found)
+        known = weight_of(of, found.geometry)
         return None if isinstance(known, str) else known.wrench
 
     finding = accurate(layout, group, found.report.reference, tolerances, weight)

@@ -33,10 +33,11 @@ def drawing_of(layout: Layout) -> PartDrawing:
         InputError: the part or a file of the layout cannot be read.
     """
     geometry = None if layout.part is None else load_geometry(layout.part)
-    return PartDrawing(_segments(layout, geometry), _weight(layout, geometry), input_files(layout), version("drake"))
+    return PartDrawing(edges_of(layout, geometry), _weight(layout, geometry), input_files(layout), version("drake"))
 
 
-def _segments(layout: Layout, geometry: PartGeometry | Polygon | None) -> Ends | None:
+def edges_of(layout: Layout, geometry: PartGeometry | Polygon | None) -> Ends | None:
+    """The edges that are drawn of a layout's part, in W, shape (e, 2, p) [m]; None without a part."""
     if layout.part is None or geometry is None:
         return None
     if isinstance(geometry, Polygon):
@@ -50,7 +51,7 @@ def _weight(layout: Layout, geometry: PartGeometry | Polygon | None) -> str:
     if layout.gravity is None:
         return "Gravity is left out."
     found = FoundContacts((), Scale(np.zeros(len(layout.gravity)), 1.0), (), geometry)
-    weight = weight_of(layout, found)
+    weight = weight_of(layout, found.geometry)
     if isinstance(weight, str):
         return f"{weight[0].upper()}{weight[1:]}: it is left out."
     mass = float(np.linalg.norm(weight.force) / np.linalg.norm(layout.gravity)) if np.any(layout.gravity) else 0.0

@@ -69,10 +69,10 @@ def _view(name: str, axes: tuple[int, int], segments: Ends, contacts: Sequence[C
 
 
 def _path(paper: _Paper, segments: Ends) -> str:
-    """All edges as one path; those seen end on are dots of no length, and left out."""
+    """All edges as one path, those behind each other once; those seen end on are dots of no length, and left out."""
     lines = []
     for start, end in segments:
-        (x, y), (u, v) = paper.at(start), paper.at(end)
+        (x, y), (u, v) = sorted((paper.at(start), paper.at(end)))
         if (x, y) != (u, v):
             lines.append(f"M{x} {y}L{u} {v}")
     return "".join(dict.fromkeys(lines))

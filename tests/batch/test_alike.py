@@ -4,7 +4,6 @@ import json
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +11,12 @@ import pytest
 from fixture_design.batch.alike import Alike
 from fixture_design.batch.alike.plan import QUESTIONS
 from fixture_design.batch.alike.structure import cut, numbers_of, structure_of
-from fixture_design.batch.item import Entry, Item
+from fixture_design.batch.item import Item
 from fixture_design.batch.items import items_of as items_in
 from fixture_design.batch.part_cache import PartCache
 from fixture_design.batch.reading import layout_of
-from fixture_design.batch.records import Detail, entry_of
+from fixture_design.batch.records import Detail, Looked, entry_of, look_at
+from fixture_design.batch.worker import verifying
 from fixture_design.contacts import Contact
 from fixture_design.layout import (
     Answer,
@@ -29,7 +29,7 @@ from fixture_design.layout import (
     Verdict,
     Weights,
 )
-from fixture_design.verification import check, contacts_of
+from fixture_design.verification import check
 from tests.batch.layouts import LAYOUT
 
 COUNT = 25
@@ -188,25 +188,39 @@ OBJ = "".join(f"v {x * 0.1} {y * 0.08} {z * 0.05}\n" for x in (-1, 1) for y in (
 @pytest.mark.parametrize("detail", ["brief", "full"])
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_layouts_on_parts_are_decided_alike(tmp_path: Path, detail: Detail, friction: float) -> None:
-    rng, parts, alike, quick = np.random.default_rng(8), PartCache(), Alike(detail), 0
-
-    def counted(*arguments: Any) -> Entry | None:
-        nonlocal quick
-        entry = alike.entry_of_found(*arguments)
-        quick += entry is not None
-        return entry
-
-    for number in range(10):
-        layout = on_box(tmp_path, rng, name=f"b{number}", require=REQUIRE, friction=friction)
-        item, before = Item(str(tmp_path / f"lib.jsonl:{number}"), json.dumps(layout).encode(), number), quick
-        found, expected = (record(entry_of(item, parts, detail, q).line) for q in (counted, None))
+    rng, parts, alike = np.random.default_rng(8), PartCache(), Alike(detail)
+    layouts = [on_box(tmp_path, rng, name=f"b{n}", require=REQUIRE, friction=friction) for n in range(10)]
+    items = [Item(str(tmp_path / f"l:{n}"), json.dumps(layout).encode(), n) for n, layout in enumerate(layouts)]
+    waiting = {place: looked for place, item in enumerate(items) if isinstance(looked := look_at(item, parts), Looked)}
+    together = dict(alike.entries_of_found(waiting, items))
+    assert len(waiting) == 10
+    assert len(together) > 4 or (detail == "full" and friction > 0)
+    for place, entry in together.items():
+        found, expected = record(entry.line), record(entry_of(items[place], parts, detail).line)
         if detail == "brief":
             assert found == expected
             continue
         compare(found, expected)
-        if quick > before:
-            assert check(verdict_from(found, contacts_of(layout_of(item)).contacts)) == []
-    assert quick > 4 or (detail == "full" and friction > 0)
+        assert check(verdict_from(found, waiting[place].found.contacts)) == []
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+def test_a_worker_gives_every_place_once(tmp_path: Path, detail: Detail) -> None:
+    """Layouts on parts, alike or not, between layouts of contacts and errors."""
+    rng = np.random.default_rng(9)
+    layouts: list[dict[str, object]] = []
+    for n in range(6):
+        layouts += [on_box(tmp_path, rng, name=f"b{n}", require=REQUIRE), {"schema": "x"}]
+        layouts += [{"schema": LAYOUT, "contacts": smooth(rng, 8, 3), "require": REQUIRE}]
+        layouts += [on_box(tmp_path, rng, name=f"l{n}", require={"locators": ["loadable"]})]
+    items = [Item(str(tmp_path / f"l:{n}"), json.dumps(layout).encode(), n) for n, layout in enumerate(layouts)]
+    known = [pair for some in verifying(detail)(items) for pair in some]
+    assert sorted(place for place, _ in known) == list(range(len(items)))
+    for place, entry in known:
+        found, expected = record(entry.line), record(entry_of(items[place], PartCache(), detail).line)
+        assert (found["name"], found["source"], list(found)) == (expected["name"], expected["source"], list(expected))
+        assert entry.outcome == ("bad input" if place % 4 == 1 else found["satisfied"])
+        assert found.get("satisfied") == expected.get("satisfied")
 
 
 def compare(found: dict, expected: dict) -> None:

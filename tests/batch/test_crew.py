@@ -1,7 +1,7 @@
 """Workers that die or hang cost nobody else's record, and results keep their order."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -10,9 +10,9 @@ import pytest
 
 from fixture_design.batch import crew as crew_module
 from fixture_design.batch.crew import Crew
-from fixture_design.batch.item import Item
+from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.records import Detail, WorkerError, record_of
-from fixture_design.batch.worker import Look, LookAt
+from fixture_design.batch.worker import Known, Look, LookAt
 from tests.batch.layouts import deadly
 
 
@@ -83,3 +83,20 @@ def test_memory_does_not_grow_with_the_items(tmp_path: Path, monkeypatch: pytest
             ahead = max(ahead, drawn - given)
     assert given == 5000
     assert ahead <= (crew_module.WINDOW + 1) * 8
+
+
+def _told_together(detail: Detail) -> Look:
+    """Says nothing before it has looked at all items of a chunk, as where these are decided together."""
+
+    def look(items: Sequence[Item]) -> Iterator[Known]:
+        time.sleep(0.4 * len(items))
+        yield [(place, Entry(item.text or b"", "yes")) for place, item in enumerate(items)]
+
+    return look
+
+
+def test_nobody_is_blamed_for_the_others_time() -> None:
+    items = [Item(f"{n}", b"%d\n" % n) for n in range(4)]
+    with closing(Crew(LookAt(_told_together, "full"), 1, limit=1.0)) as crew:
+        found = [entry.line for some in crew.entries(iter(items)) for _, entry in some]
+    assert found == [b"%d\n" % n for n in range(4)]

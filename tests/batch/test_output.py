@@ -4,6 +4,7 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -40,10 +41,12 @@ def library(tmp_path: Path) -> Path:
     return lines(tmp_path / "lib.jsonl", layouts)
 
 
-def run(library: Path, output: Path, most: int | None = None, detail: Detail = "brief") -> tuple[int, list[dict]]:
+def run(
+    library: Path, output: Path, most: int | None = None, detail: Detail = "brief", **keys: Any
+) -> tuple[int, list[dict]]:
     """How many layouts were looked at, and all records without their times."""
     workers = InThisProcess(detail, most)
-    run_batch([library], output, workers, detail=detail)
+    run_batch([library], output, workers, detail=detail, **keys)
     records = [json.loads(line) for line in output.read_text().splitlines()]
     for record in records:
         record.get("run", {}).pop("time", None)
@@ -55,7 +58,8 @@ def test_records_in_order_with_hash_version_and_tolerances(library: Path, tmp_pa
     assert seen == 5
     assert [record["name"] for record in records] == ["a", "b", "c", "d", "lib:5"]
     assert [record.get("satisfied", "error") for record in records] == ["yes", "no", "error", None, "error"]
-    assert set(records[2]) == {"schema", "name", "source", "error"}
+    assert set(records[2]) == {"schema", "name", "source", "error", "run"}
+    assert set(records[2]["run"]) == {"version", "input"}
     assert "lib.jsonl:5: column 2" in records[4]["error"]["message"]
     run_of = records[0]["run"]
     assert len(run_of["input"]) == 64

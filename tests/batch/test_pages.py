@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from collections.abc import Callable
 from datetime import UTC, datetime
 from html.parser import HTMLParser
 from importlib.util import find_spec
@@ -10,11 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from fixture_design.batch.against import Comparison, compare
+from fixture_design.batch.against import Comparison, _Waiting, compare
 from fixture_design.batch.report import MOST_ROWS, write_batch_report
 from fixture_design.batch.summary import Summary
 from fixture_design.batch.table import check_table, write_table
 from fixture_design.errors import FileFormatError, InputError
+from tests.batch.layouts import planar
 
 SCHEMA = "fixture_design/verdict/1"
 
@@ -64,9 +66,43 @@ def test_layouts_are_found_again_where_the_library_moved_or_a_name_was_lost(tmp_
     assert [c.after for c in found.changed] == ["bad input"]
 
 
+def test_noise_of_a_margin_of_nothing_is_no_loss(tmp_path: Path) -> None:
+    assert compared(tmp_path, [record("a", "no", 1.5e-16)], [record("a", "no", 1e-17)]).lost == []
+
+
 def test_variants_of_one_name_are_not_mixed_up(tmp_path: Path) -> None:
     old = [record("x", source="a.yaml"), record("x", "no", source="b.yaml")]
     assert compared(tmp_path, old, old[::-1]).changed == []
+
+
+@pytest.mark.parametrize("turn", [lambda records: records, lambda records: records[::-1], lambda records: records[7:]])
+def test_the_order_of_the_library_does_not_matter(tmp_path: Path, turn: Callable) -> None:
+    old = [record(f"n{n}", margin=0.1 + n) for n in range(20)]
+    new = [record(f"n{n}", "no" if n == 12 else "yes", margin=0.1 + n) for n in range(20)]
+    found = compared(tmp_path, turn(old), [record("new"), *new])
+    assert [(change.name, change.what) for change in found.changed] == [("n12", "verdict")]
+    assert (found.same, len(found.new), found.gone, found.lost) == (len(turn(old)), 21 - len(turn(old)), [], [])
+
+
+def test_little_waits_where_the_order_was_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    waiting, most = [0], [0]
+    put, take = _Waiting.put, _Waiting.take
+
+    def counted_put(self: _Waiting, known: object) -> None:
+        waiting[0] += 1
+        most[0] = max(most[0], waiting[0])
+        put(self, known)  # type: ignore[arg-type]
+
+    def counted_take(self: _Waiting, like: object) -> object:
+        found = take(self, like)  # type: ignore[arg-type]
+        waiting[0] -= found is not None
+        return found
+
+    monkeypatch.setattr(_Waiting, "put", counted_put)
+    monkeypatch.setattr(_Waiting, "take", counted_take)
+    records = [record(f"n{n}") for n in range(300)]
+    assert compared(tmp_path, records, [record("new"), *records]).same == 300
+    assert most[0] <= 3
 
 
 def test_no_layout_in_common(tmp_path: Path) -> None:
@@ -139,7 +175,8 @@ def page(tmp_path: Path, records: list[dict], comparison: Comparison | None = No
 
     summary = Summary()
     for number, each in enumerate(records):
-        item = Item(each["source"], b"", variant=number if "[" in each["name"] else None, sampled=True)
+        text = json.dumps(planar(sweep={"at": 0.1, "samples": 9})).encode()
+        item = Item(each["source"], text, 1, number if "[" in each["name"] else None, sampled=True)
         summary.add(item, Entry(json.dumps(each).encode(), outcome_of(each), smallest_margin(each)))
     path = tmp_path / "page.html"
     when = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
@@ -155,7 +192,14 @@ def test_the_page_is_whole_self_contained_and_escaped(tmp_path: Path) -> None:
     assert tags.open == []
     assert tags.count["script"] == 1
     assert not re.search(r"(src|href)=|https?://", text)
-    for words in ("2026-01-02 03:04 UTC", "a&lt;script&gt;", "&lt;b&gt;no&lt;/b&gt;", "all: form closure", "s[1]"):
+    for words in (
+        "2026-01-02 03:04 UTC",
+        "a&lt;script&gt;",
+        "&lt;b&gt;no&lt;/b&gt;",
+        "all: form closure",
+        "s[1]",
+        "P2 by (",
+    ):
         assert words in text
     assert tags.count["rect"] == 40
 

@@ -1,12 +1,16 @@
 """Counts, worst cases and confidence intervals."""
 
+import json
+
 import pytest
 from scipy import stats
 
 from fixture_design.batch.interval import wilson_interval
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.outcome import outcome_of, smallest_margin
+from fixture_design.batch.reading import layout_of
 from fixture_design.batch.summary import Summary
+from tests.batch.layouts import planar
 
 
 @pytest.mark.parametrize(("successes", "count"), [(0, 1), (1, 1), (0, 50), (50, 50), (7, 9), (970, 1000)])
@@ -43,12 +47,25 @@ def test_the_smallest_margin_is_that_of_what_is_required() -> None:
     assert smallest_margin(record) == 0.1
 
 
+@pytest.mark.parametrize(("leaving", "smallest"), [(0.0, 0.1), (0.05, 0.1), (-0.2, -0.2)])
+def test_sliding_out_is_no_small_margin(leaving: float, smallest: float) -> None:
+    record = {
+        "groups": {"all": {"form_closure": {"margin": 0.1}, "loadable": {"margin": leaving}}},
+        "requirements": [{"group": "all", "require": "form_closure"}, {"group": "all", "require": "loadable"}],
+    }
+    assert smallest_margin(record) == smallest
+
+
 def test_the_worst_variant_has_the_worst_outcome_then_the_smallest_margin() -> None:
     summary = Summary()
+    text = json.dumps(planar(sweep={"friction": [0.1, 0.5], "samples": 5, "seed": 1}))
+    item = Item("x", text.encode(), 1, sampled=True)
     for number, (outcome, margin) in enumerate([("yes", 0.1), ("yes", 0.01), ("no", 0.5), ("no", -0.2), ("yes", 0.0)]):
-        summary.add(Item("x", b"", variant=number, sampled=True), Entry(b'{"name": "x[%d]"}' % number, outcome, margin))
+        summary.add(item._replace(variant=number), Entry(b'{"name": "x[%d]"}' % number, outcome, margin))
     (sweep,) = summary.as_dict()["sweeps"]
     assert (sweep["count"], sweep["holds"], sweep["fraction"]) == (5, 3, 0.6)
-    assert sweep["worst"] == {"name": "x[3]", "outcome": "no", "margin": -0.2}
+    friction = layout_of(item._replace(variant=3)).friction
+    worst = {"name": "x[3]", "outcome": "no", "margin": -0.2, "off": {"friction": friction}}
+    assert sweep["worst"] == worst
     assert sweep["interval"][0] < 0.6 < sweep["interval"][1]
     assert summary.as_dict()["outcomes"]["yes"] == 3

@@ -8,10 +8,11 @@ import pytest
 
 from fixture_design.batch.items import items_of
 from fixture_design.batch.reading import layout_of
-from fixture_design.batch.sweep import variant_count, variant_of
+from fixture_design.batch.sweep import deviations_of, variant_count, variant_of
 from fixture_design.errors import InputError
 from fixture_design.io import layout_from_data
 from fixture_design.layout import Layout
+from fixture_design.tolerances import SURFACE_GAP
 from tests.batch.layouts import LAYOUT, planar
 
 
@@ -58,10 +59,36 @@ def test_a_grid_has_all_combinations_once() -> None:
 
 
 def test_what_is_moved_off_the_surface_still_touches() -> None:
-    given = on_part({"part_pose": {"xyz": [0, 0, 0.002], "rpy": [0.01, 0, 0]}, "at": 0.001, "samples": 1})
-    lever = np.hypot(0.1, 1.0)  # from the part's origin to the element
-    expected = given.surface_gap + 0.002 + 0.01 * lever + 0.001 * np.sqrt(3)
-    assert variant_of(given, 0).surface_gap == pytest.approx(expected)
+    """The gap grows by the way that the element makes against the part, whatever moves."""
+    given = on_part({"part_pose": {"xyz": [0, 0, 0.002], "rpy": [0.01, 0.02, 0.03]}, "at": 0.001})
+    assert variant_count(given) == 3**7
+    for number in range(0, 3**7, 31):
+        variant = variant_of(given, number)
+        assert variant.part is not None
+        off = variant.part.pose.rotation @ np.array([0.1, 0, -1]) + variant.part.pose.translation
+        way = float(np.linalg.norm(off - variant.elements[0].at))
+        assert variant.surface_gap == pytest.approx(given.surface_gap + way, abs=1e-15)
+
+
+def test_only_what_moves_against_the_part_needs_a_gap() -> None:
+    assert variant_of(on_part({"friction": [0, 1], "samples": 1}), 0).surface_gap == SURFACE_GAP
+    contacts = [{"name": "Q", "role": "locator", "point": [1, 0], "normal": [0, 1]}]
+    given = layout({"at": 0.1, "samples": 1}, contacts=contacts)
+    assert variant_of(given, 0).surface_gap == SURFACE_GAP
+    assert variant_of(layout({}, contacts=[]), 0).contacts == ()
+
+
+def test_deviations_are_what_a_variant_changes() -> None:
+    given = on_part({"part_pose": {"xyz": [0.001, 0, 0]}, "at": 0.002, "friction": [0.1, 0.3], "samples": 5})
+    off, variant = deviations_of(given, 3).as_dict(), variant_of(given, 3)
+    assert variant.part is not None
+    assert off["part_pose"] == {"xyz": [pytest.approx(variant.part.pose.translation[0]), 0, 0], "rpy": [0, 0, 0]}
+    assert off["at"] == {"L1": pytest.approx((variant.elements[0].at - given.elements[0].at).tolist())}
+    assert off["friction"] == variant.friction
+    assert deviations_of(layout({}), 0).as_dict() == {}
+    assert deviations_of(
+        layout({"part_pose": {"theta": 1}}, part={"polygon": [[0, 0], [1, 0], [0, 1]]}), 0
+    ).as_dict() == {"part_pose": {"xy": [0, 0], "theta": -1}}
 
 
 def test_friction_of_its_own_stays() -> None:

@@ -97,8 +97,20 @@ def closed_by_linprog(rows: np.ndarray) -> bool:
     return found.status == 0 and np.linalg.matrix_rank(rows) == 6
 
 
+def closed_as_dexnet(rows: np.ndarray) -> bool:
+    """The smallest wrench in the hull, asked of cvxopt's QP with the numbers that dex-net gives it."""
+    cvxopt = pytest.importorskip("cvxopt", reason="cvxopt, which dex-net uses, is not installed")
+    count, matrix = len(rows), cvxopt.matrix
+    cvxopt.solvers.options["show_progress"] = False
+    found = cvxopt.solvers.qp(
+        matrix(2 * (rows @ rows.T + 1e-10 * np.eye(count))), matrix(0.0, (count, 1)), matrix(-np.eye(count)),
+        matrix(0.0, (count, 1)), matrix(1.0, (1, count)), matrix(1.0),
+    )  # fmt: skip
+    return found["primal objective"] < 1e-6
+
+
 def closed_by_qp(rows: np.ndarray) -> bool:
-    """The smallest wrench in the hull, as dex-net asks it of a QP solver (there cvxopt's, here scipy's)."""
+    """The same of scipy's SLSQP."""
     gram, count = rows @ rows.T, len(rows)
     found = minimize(
         lambda w: w @ gram @ w, np.full(count, 1 / count), jac=lambda w: 2 * gram @ w, bounds=[(0, None)] * count,
@@ -107,7 +119,7 @@ def closed_by_qp(rows: np.ndarray) -> bool:
     return bool(found.fun < 1e-6)
 
 
-@pytest.mark.parametrize("solve", [closed_by_linprog, closed_by_qp])
+@pytest.mark.parametrize("solve", [closed_by_linprog, closed_as_dexnet, closed_by_qp])
 @pytest.mark.benchmark(group="20 layouts of contacts, form closure alone")
 def test_loops_over_solvers(benchmark: Benchmark, items: list[Item], solve: Callable[[np.ndarray], bool]) -> None:
     some = items[:20]

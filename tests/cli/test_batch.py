@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from fixture_design.batch import items_of
+from fixture_design.batch.records import WorkerError, failure
 from tests.batch.layouts import FAILS, HOLDS, LOCATORS, lines, planar
 
 PROGRAM = [sys.executable, "-c", "from fixture_design.cli import main; main()", "batch"]
@@ -46,6 +48,18 @@ def test_exit_codes(command: Callable, tmp_path: Path, layouts: list, code: int)
     ran = command("batch", lines(tmp_path / "lib.jsonl", layouts), "-o", tmp_path / "o.jsonl", "--jobs", 1)
     assert ran.code == code
     assert ran.out.startswith("2 layouts\n")
+
+
+def test_an_error_of_ours_has_its_own_code_until_it_is_looked_at_again(command: Callable, tmp_path: Path) -> None:
+    library, output = lines(tmp_path / "lib.jsonl", [planar("a", require=HOLDS)]), tmp_path / "o.jsonl"
+    (item,) = items_of([library])
+    output.write_bytes(failure(item, WorkerError("it died")).line)
+    ran = command("batch", library, "-o", output, "--jobs", 1)
+    assert (ran.code, ran.out) == (4, "1 layout, 1 of them from before\n  internal error: 1\n")
+    ran = command("batch", library, "-o", output, "--jobs", 1, "--retry")
+    assert (ran.code, ran.out.splitlines()[1:]) == (0, ["  yes: 1"])
+    assert ran.out.startswith("1 layout, 1 of them from before; 1 that were errors were looked at again\n")
+    assert [record["satisfied"] for record in records(output)] == ["yes"]
 
 
 def test_json_is_the_summary(command: Callable, tmp_path: Path) -> None:
@@ -83,6 +97,8 @@ def test_json_is_the_summary(command: Callable, tmp_path: Path) -> None:
         (["lib.jsonl", "-o", "o.jsonl", "--brief", "--sets"], "one of brief and sets"),
         (["lib.jsonl", "-o", "o.jsonl", "--jobs", "0"], "--jobs"),
         (["lib.jsonl", "-o", "o.jsonl", "--limit", "0"], "--limit"),
+        (["lib.jsonl", "-o", "o.jsonl", "--limit", "1", "--cluster", "tcp://x:1"], "--limit are for this machine"),
+        (["lib.jsonl", "-o", "o.jsonl", "--jobs", "1", "--cluster", "tcp://x:1"], "--jobs and --limit are for this"),
     ],
 )
 def test_bad_input(
@@ -115,16 +131,35 @@ def test_against_an_earlier_run_with_page_and_table(command: Callable, tmp_path:
     assert [change["name"] for change in told["against"]["changed"]] == ["a"]
 
 
+def test_a_reader_who_leaves_costs_no_page(tmp_path: Path) -> None:
+    library, page = lines(tmp_path / "lib.jsonl", [planar("a", require=HOLDS)]), tmp_path / "r.html"
+    process = start(library, "-o", tmp_path / "o.jsonl", "--report", page)
+    assert process.stdout is not None
+    process.stdout.close()
+    assert process.wait() == 141
+    assert "</html>" in page.read_text()
+
+
 def test_malformed_files_cost_nobody_else(tmp_path: Path) -> None:
-    for number in range(100):
+    for number in range(1000):
         content = json.dumps(planar(require=HOLDS))
         if number % 5 == 0:
-            content = ("", "{", "\0", "schema: x", '{"schema": "fixture_design/layout/1"}')[number // 5 % 5]
+            content = MALFORMED[number // 5 % len(MALFORMED)]
         (tmp_path / f"{number:03d}.json").write_text(content)
     process = start(tmp_path, "-o", tmp_path / "o.jsonl")
     assert process.wait() == 2
     found = records(tmp_path / "o.jsonl")
-    assert ["error" in record for record in found] == [number % 5 == 0 for number in range(100)]
+    assert ["error" in record for record in found] == [number % 5 == 0 for number in range(1000)]
+    assert sum(record.get("satisfied") == "yes" for record in found) == 800
+
+
+MALFORMED = (
+    "", "{", "\0", "schema: x", '{"schema": "fixture_design/layout/1"}', "[1, 2]", "null", "\ufeff{}",
+    '{"schema": 1e999}',
+    json.dumps(planar(elements=[{"name": "E", "role": "locator", "at": [0, 0]}])),
+    json.dumps(planar(part={"mesh": "nowhere.stl"})), json.dumps(planar(sweep={"part_pose": {"xy": [1, 1]}})),
+    json.dumps(planar(friction=-1)), json.dumps(planar())[:-9], "[" * 20_000,
+)  # fmt: skip
 
 
 def test_ctrl_c_saves_and_the_same_command_goes_on(tmp_path: Path) -> None:

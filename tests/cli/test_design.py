@@ -224,7 +224,7 @@ def test_a_start_layout_is_repaired(command: Command, tmp_path: Path) -> None:
         ("space: planar", "space: flat", "spatial"),
         ("part: {polygon: [[0, 0], [40, 0], [40, 20], [0, 20]]}", "name: x", "'part' is missing"),
         ("polygon: [[0, 0], [40, 0], [40, 20], [0, 20]]", "mesh: part.stl", "a planar part is a polygon"),
-        ("schema: fixture_design/task/1", "schema: fixture_design/layout/1", "verify"),
+        ("schema: fixture_design/task/1", "schema: fixture_design/graph/1", "classifier"),
         ("units: mm", "units: mm\nobjective: [fewest, fewest]", "twice"),
         ("units: mm", "units: mm\nobjective: []", "objective"),
         ("units: mm", "units: mm\nstart: nowhere.yaml", "no such file"),

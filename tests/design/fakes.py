@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fixture_design.analysis.acting import load_wrench
 from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Provenance, Scale
 from fixture_design.design import CandidateRules, Task
@@ -51,6 +52,11 @@ class Fake:
     def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
         return np.ones(len(points), dtype=bool)
 
+    def wrenches(self, layout: Layout) -> tuple[np.ndarray, list[np.ndarray]]:
+        p = self.given.points.shape[1]
+        wrenches = [load_wrench(load, p) for load in layout.loads]
+        return np.zeros(3 * (p - 1)), wrenches or [np.zeros(3 * (p - 1))]
+
     def contacts(self, layout: Layout) -> tuple[Contact, ...]:
         found = []
         for element in layout.elements:
@@ -63,7 +69,7 @@ class Fake:
         return (*found, *layout.contacts)
 
     def verify(self, layout: Layout) -> Verdict:
-        alone = Layout(layout.name, layout.space, contacts=self.contacts(layout), require=layout.require)
+        alone = replace(layout, part=None, elements=(), contacts=self.contacts(layout))
         return verify(alone)
 
 

@@ -170,10 +170,8 @@ def test_schema_of_verdicts() -> None:
 def test_schema_of_nothing() -> None:
     with pytest.raises(UnknownNameError) as caught:
         json_schema("layuot")
-    assert (
-        str(caught.value)
-        == "no file kind is called 'layuot'; did you mean 'layout'? there are: assembly, graph, layout, task, verdict"
-    )
+    kinds = "assembly, classifier, graph, layout, task, verdict"
+    assert str(caught.value) == f"no file kind is called 'layuot'; did you mean 'layout'? there are: {kinds}"
 
 
 def test_reading_files_loads_no_geometry() -> None:

@@ -6,6 +6,7 @@ The same rows and the same tolerances as in `analysis`, where each question has 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,10 +64,10 @@ class Decided:
     closures: Closures | None
 
 
-def numbers_of(plan: Plan, given: np.ndarray, report: Scale | None = None) -> Numbers:
+def numbers_of(plan: Plan, given: np.ndarray, reports: Sequence[Scale] = ()) -> Numbers:
     """The numbers of n layouts, shape (n, h), as points, normals and coefficients.
 
-    ``report``: the scale of the report, where it is not the contacts' own.
+    ``reports``: the scales of the reports, where they are not the contacts' own.
     """
     points = np.ascontiguousarray(given[:, plan.points])  # so that sums have the order that `scale_of` has
     units = plan.layout.units
@@ -82,8 +83,9 @@ def numbers_of(plan: Plan, given: np.ndarray, report: Scale | None = None) -> Nu
         coefficients = given[:, plan.coefficients]
         fit &= ((coefficients >= 0) & (coefficients <= MOST_FRICTION)).all(axis=1)
         reference, length, sound = _scale(points)
-    if report is not None:
-        reference, length = np.tile(report.reference, (len(given), 1)), np.full(len(given), report.length)
+    if reports:
+        reference = np.array([report.reference for report in reports])
+        length = np.array([report.length for report in reports])
     fit &= sound & ~_coincide(points, length)
     return Numbers(points, unit, normals, frictions, reference, length, fit)
 

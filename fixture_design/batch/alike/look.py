@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from fixture_design.batch.alike.pile import Kind, Pile, entries_of
 from fixture_design.batch.alike.plan import paths_of, plan_of, row_of
@@ -13,11 +11,10 @@ from fixture_design.batch.alike.structure import Cut, Path, Structure, Structure
 from fixture_design.batch.alike.text import as_json
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.reading import layout_of
-from fixture_design.batch.records import Detail
+from fixture_design.batch.records import Detail, Looked
 from fixture_design.contacts import Contact
 from fixture_design.errors import InputError
 from fixture_design.layout import Layout
-from fixture_design.verification.found import FoundContacts
 
 #: Fewer layouts of one structure than this are sooner looked at one by one.
 _FEW = 2
@@ -44,31 +41,33 @@ class Alike:
                 found += entries_of(kind, pile, items)
         return found
 
-    def entry_of_found(self, item: Item, layout: Layout, found: FoundContacts, start: float) -> Entry | None:
-        """The entry of a layout whose contacts geometry has found; None if `verify` has to look at it.
+    def entries_of_found(self, waiting: Mapping[int, Looked], items: Sequence[Item]) -> list[tuple[int, Entry]]:
+        """The entries of layouts whose contacts geometry has found, by their places; `verify` looks at what is missing.
 
         Contacts that are exact or as good as that, and have neither clearance nor torsion, are as those of a text.
         """
+        piles: dict[Kind, Pile] = {}
+        for place, looked in waiting.items():
+            kind = self._kind_of_found(looked)
+            if kind is not None:
+                _put(piles.setdefault(kind, Pile()), place, looked)
+        return [entry for kind, pile in piles.items() for entry in entries_of(kind, pile, items)]
+
+    def _kind_of_found(self, looked: Looked) -> Kind | None:
+        item, layout, found, *_ = looked
         contacts = found.contacts
         plain = not any(c.provenance.normal_error or c.torsion or c.clearance or c.linked for c in contacts)
         if self._detail == "sets" or not plain or not (layout.elements or layout.bodies):
             return None
-        key = (layout.space, layout.stages, tuple(layout.require.items()), found.notes, *map(_form, contacts))
+        swept = item.variant is not None and bool(layout.elements)
+        key = (swept, layout.space, layout.stages, tuple(layout.require.items()), found.notes, *map(_form, contacts))
         if key not in self._found:
             if len(self._found) >= _MOST_FOUND:
                 self._found.clear()
             given = Layout("", layout.space, contacts=contacts, stages=layout.stages, require=layout.require)
             kind = self._kind(given, paths_of(contacts))
-            self._found[key] = kind and replace(kind, plan=replace(kind.plan, notes=found.notes))
-        kind = self._found[key]
-        if kind is None:
-            return None
-        words = {f"feature {k}": as_json(c.feature) for k, c in enumerate(contacts) if c.feature is not None}
-        values = {
-            f"distance {k}": np.array([[c.distance + 0.0]]) for k, c in enumerate(contacts) if c.distance is not None
-        }
-        pile = Pile([0], [layout.name], [list(row_of(contacts))], found.report, words, values)
-        return next((entry for _, entry in entries_of(kind, pile, [item], start)), None)
+            self._found[key] = kind and replace(kind, plan=replace(kind.plan, notes=found.notes), swept=swept)
+        return self._found[key]
 
     def _piles(self, items: Sequence[Item]) -> dict[Kind, Pile]:
         piles: dict[Kind, Pile] = {}
@@ -125,6 +124,21 @@ class Alike:
         if plan is None or (self._detail == "full" and any(len(group.owners) > 1 for group in plan.plans)):
             return None
         return Kind(plan, self._detail)
+
+
+def _put(pile: Pile, place: int, looked: Looked) -> None:
+    """One more layout of this pile's kind."""
+    layout, found = looked.layout, looked.found
+    pile.places.append(place)
+    pile.names.append(layout.name)
+    pile.numbers.append(list(row_of(found.contacts)))
+    pile.reports.append(found.report)
+    pile.inputs.append(looked.input)
+    pile.seconds.append(looked.seconds)
+    named = enumerate(found.contacts)
+    pile.words.append({f"feature {k}": as_json(c.feature) for k, c in named if c.feature is not None})
+    values = {f"distance {k}": c.distance + 0.0 for k, c in enumerate(found.contacts) if c.distance is not None}
+    pile.values.append(values | {"surface gap": layout.surface_gap})
 
 
 def _form(contact: Contact) -> tuple[object, ...]:

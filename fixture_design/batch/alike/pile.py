@@ -22,10 +22,15 @@ from fixture_design.contacts import Scale
 
 @dataclass(eq=False)
 class Kind:
-    """Layouts of one plan, and the texts of their records by their answers."""
+    """Layouts of one plan, and the texts of their records by their answers.
+
+    Attributes:
+        swept: whether they are variants that elements touch, whose `surface_gap` the records tell.
+    """
 
     plan: Plan
     detail: Detail
+    swept: bool = False
     texts: dict[bytes, RecordText] = field(default_factory=dict)
 
     @property
@@ -38,16 +43,19 @@ class Pile:
     """Items of one kind: their places in the chunk, the layouts' names and numbers.
 
     Attributes:
-        report: the scale of the report, where it is not that of the contacts.
-        words, values: further texts and numbers of all records, by the names of their marks.
+        reports: the scales of the reports, where they are not those of the contacts.
+        words, values: further texts and numbers of the records, by the names of their marks.
+        inputs: their hashes, where they are known.  seconds: what was spent on each before.
     """
 
     places: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     numbers: list[list[int | float]] = field(default_factory=list)
-    report: Scale | None = None
-    words: dict[str, str] = field(default_factory=dict)
-    values: dict[str, np.ndarray] = field(default_factory=dict)
+    reports: list[Scale] = field(default_factory=list)
+    words: list[dict[str, str]] = field(default_factory=list)
+    values: list[dict[str, float]] = field(default_factory=list)
+    inputs: list[str] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
 
 
 @dataclass(eq=False)
@@ -66,20 +74,19 @@ class _Table:
     margins: np.ndarray
 
 
-def entries_of(kind: Kind, pile: Pile, items: Sequence[Item], start: float | None = None) -> list[tuple[int, Entry]]:
-    """The entries of those of a pile that are decided here, by their places in the chunk.
-
-    ``start``: when the work on them was begun; by default it is now.
-    """
-    start = perf_counter() if start is None else start
+def entries_of(kind: Kind, pile: Pile, items: Sequence[Item]) -> list[tuple[int, Entry]]:
+    """The entries of those of a pile that are decided here, by their places in the chunk."""
+    start = perf_counter()
     try:
         given = np.array(pile.numbers, dtype=np.float64)
     except OverflowError:  # a whole number that no float holds
         return []
-    table = _table(kind, numbers_of(kind.plan, given, pile.report))
-    table.values.update(pile.values)
+    table = _table(kind, numbers_of(kind.plan, given, pile.reports))
+    for name in pile.values[0] if pile.values else ():
+        table.values[name] = np.array([[values[name]] for values in pile.values])
     each = (perf_counter() - start) / max(int(table.good.sum()), 1)
-    table.values["time"] = np.full((len(given), 1), round(each, TIME_DIGITS))
+    seconds = np.array(pile.seconds) if pile.seconds else np.zeros(len(given))
+    table.values["time"] = np.round(seconds + each, TIME_DIGITS)[:, None]
     by_key: dict[bytes, list[int]] = {}
     for row in np.flatnonzero(table.good).tolist():
         by_key.setdefault(table.keys[row].tobytes(), []).append(row)
@@ -144,7 +151,7 @@ def _text(kind: Kind, key: list[int]) -> RecordText:
         *answers, rank = key[index * width : (index + 1) * width]
         each = full_findings(plan, index, answers, rank, mark) if kind.full else brief_findings(answers)
         findings |= dict.fromkeys(group.names, each)
-    return record_text(plan, findings, mark, kind.detail)
+    return record_text(plan, findings, mark, kind.detail, kind.swept)
 
 
 def _filled(
@@ -158,10 +165,10 @@ def _filled(
     found = []
     for row, numbers in zip(rows, columns, strict=True):
         item = items[pile.places[row]]
-        words = pile.words | {
+        words = (pile.words[row] if pile.words else {}) | {
             "name": as_json(pile.names[row]),
             "source": as_json(item.source),
-            "input": f'"{input_hash(item)}"',
+            "input": f'"{pile.inputs[row] if pile.inputs else input_hash(item)}"',
         }
         for index, texts in places.items():
             words[f"{index} basis"] = "[" + ", ".join([texts[k] for k in table.bases[index][row].tolist()]) + "]"

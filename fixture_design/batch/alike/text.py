@@ -59,7 +59,9 @@ class RecordText:
     outcome: str
 
 
-def record_text(plan: Plan, findings: Mapping[str, Mapping[str, Finding]], mark: Marks, detail: Detail) -> RecordText:
+def record_text(
+    plan: Plan, findings: Mapping[str, Mapping[str, Finding]], mark: Marks, detail: Detail, swept: bool
+) -> RecordText:
     """The text of records whose groups have these findings, with marks in the place of numbers."""
     groups = {
         group.name: GroupVerdict(group.name, tuple(c.name for c in group.contacts), findings[group.name])
@@ -91,11 +93,9 @@ def record_text(plan: Plan, findings: Mapping[str, Mapping[str, Finding]], mark:
     )
     record = verdict_record(verdict, detail)
     run = record["run"]
-    # `input` and `time` come last, as `records` has them
-    record["run"] = {key: value for key, value in run.items() if key != "input"} | {
-        "input": INPUT,
-        "time": mark("time", 1)[0],
-    }
+    # these come last, as `records` has them
+    last = ({"surface_gap": mark("surface gap", 1)[0]} if swept else {}) | {"input": INPUT, "time": mark("time", 1)[0]}
+    record["run"] = {key: value for key, value in run.items() if key != "input"} | last
     entry = entry_of_record(record)
     return _cut(dumps(record) + "\n", mark, entry.outcome)
 

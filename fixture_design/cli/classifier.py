@@ -1,0 +1,120 @@
+"""`fixture-design classifier GRAPH`: measurement sets and discriminants of a contact-state graph."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from fixture_design.cli.messages import say
+from fixture_design.cli.numbers import numbers
+from fixture_design.errors import InputError
+from fixture_design.io import dumps, read_graph
+
+if TYPE_CHECKING:
+    from fixture_design.recognition import Classifier
+
+
+def classifier(
+    graph: Annotated[Path, typer.Argument(help="Graph file, from `states`.", metavar="GRAPH", readable=False)],
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Classifier file.", metavar="FILE.json")] = None,
+    measure: Annotated[
+        Literal["force", "displacement", "both"], typer.Option("--measure", help="What is measured.")
+    ] = "force",
+    axes: Annotated[
+        Literal["fixed", "part"], typer.Option("--axes", help="Axes of what is measured: the world's, or the part's.")
+    ] = "fixed",
+    friction: Annotated[float, typer.Option("--friction", help="Coefficient of every contact.")] = 0.0,
+    mass: Annotated[float, typer.Option("--mass", help="Of the moving part, if its weight is not tared [kg].")] = 0.0,
+    center: Annotated[
+        str | None, typer.Option("--center", help="Its centre of mass, in its own frame [m].", metavar="X,Y[,Z]")
+    ] = None,
+    gravity: Annotated[
+        str | None, typer.Option("--gravity", help="Default: 9.81 along -y, in space -z.", metavar="X,Y[,Z]")
+    ] = None,
+    noise: Annotated[float, typer.Option("--noise", help="Bound of the error of forces, relative to them.")] = 0.0,
+    twist_noise: Annotated[float, typer.Option("--twist-noise", help="Likewise of displacements.")] = 0.0,
+    floor: Annotated[float, typer.Option("--floor", help="Forces up to this tell nothing [N].")] = 0.0,
+    interpolation: Annotated[
+        Literal["neighbours", "none", "hull"], typer.Option("--interpolation", help="What is between samples.")
+    ] = "neighbours",
+    accuracy: Annotated[float, typer.Option("--accuracy", help="Of the interpolation (sine of an angle).")] = 0.005,
+    fewest: Annotated[bool, typer.Option("--fewest", help="The smallest groups of discriminants.")] = False,
+    seed: Annotated[int, typer.Option("--seed", help="Of the samples that sets are checked on.")] = 0,
+    c_file: Annotated[Path | None, typer.Option("--c", help="Discriminants as C code.", metavar="OUT.c")] = None,
+    python_file: Annotated[
+        Path | None, typer.Option("--python", help="Discriminants as a numpy function.", metavar="OUT.py")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
+) -> None:
+    """Compute what may be measured in each contact state, and the fewest tests that tell one from the next.
+
+    Exit code: 0, 2 bad input.
+    """
+    known = read_graph(graph)
+    from fixture_design.recognition import Noise, build_classifier  # noqa: PLC0415 - after the arguments are known good
+
+    try:
+        made = build_classifier(
+            known,
+            measure=measure,
+            axes=axes,
+            friction=friction,
+            mass=mass,
+            center=numbers(center, "--center"),
+            gravity=numbers(gravity, "--gravity"),
+            noise=Noise(noise, twist_noise, floor),
+            interpolation=interpolation,
+            accuracy=accuracy,
+            fewest=fewest,
+            seed=seed,
+            progress=_progress,
+        )
+    except InputError as error:
+        raise error.within(graph) from error
+    _write(made, out, c_file, python_file)
+    if as_json:
+        from fixture_design.io import classifier_to_dict  # noqa: PLC0415 - only where asked for
+
+        typer.echo(dumps(classifier_to_dict(made)))
+    else:
+        _print(made)
+
+
+def _write(made: Classifier, out: Path | None, c_file: Path | None, python_file: Path | None) -> None:
+    from fixture_design.io import write_classifier  # noqa: PLC0415 - as above
+    from fixture_design.io.text_file import write_text  # noqa: PLC0415
+    from fixture_design.recognition import c_source, numpy_source  # noqa: PLC0415
+
+    if out is not None:
+        write_classifier(made, out)
+    if c_file is not None:
+        write_text(c_file, c_source(made))
+    if python_file is not None:
+        write_text(python_file, numpy_source(made))
+
+
+def _print(made: Classifier) -> None:
+    cones = sum(len(state.measured) for state in made.states)
+    typer.echo(f"{made.name}: {len(made.states)} states, {cones} cones, {len(made.transitions)} transitions")
+    for state in made.states:
+        widening = state.measured.widening
+        bounds = ", ".join(
+            f"{what} {value:.2g}"
+            for what, value in (("forces", widening.force), ("displacements", widening.displacement))
+            if f"{value:.2g}" != "0"
+        )
+        wider = f", widened by {bounds}" if bounds else ""
+        contacts = "; ".join(state.contacts) or "no contact"
+        typer.echo(f"  {state.id:>4}  {_counted(len(state.measured), 'cone')}{wider}  {contacts}")
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _progress(words: str) -> None:
+    if sys.stderr.isatty():
+        say(words)

@@ -1,0 +1,96 @@
+"""A changed layout: what stays, what moves under its old name, what comes and leaves; and a step for each change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from fixture_design.arrays import Indices, read_only
+from fixture_design.contacts import Role
+from fixture_design.design.drawing_up import fresh_names
+from fixture_design.design.problem import Problem
+from fixture_design.design.steps import Step, in_world, stopped, unnoticed
+from fixture_design.layout import Element, Layout, PointTip, SoftTip, SphereTip, Tip
+
+#: Tips that can be anywhere; where another one leaves a point comes.
+_ANYWHERE = (PointTip, SphereTip, SoftTip)
+
+
+def index_of(problem: Problem, element: Element, clamps: Indices) -> int:
+    """The candidate that an element of the changed layout is."""
+    for index in clamps.tolist():
+        known = problem.candidates.elements[index]
+        if known is element or (known is None and np.array_equal(problem.candidates.places[index], element.at)):
+            return int(index)
+    raise AssertionError(element.name)
+
+
+def changed(asked: Layout, problem: Problem, locators: Indices, clamps: Indices) -> tuple[Layout, list[Step]]:
+    """The layout with what stays, what moved under its old name, what came; and a step for each change."""
+    known = problem.candidates.elements
+    after = {known[i].name for i in [*locators.tolist(), *clamps.tolist()] if known[i] is not None}  # type: ignore[union-attr]
+    steps: list[Step] = []
+    elements = {e.name: e for e in asked.elements}
+    taken = {*elements, *(named.name for named in (*asked.bodies, *asked.contacts))}
+    roles: tuple[tuple[Role, str, Indices], ...] = (("locator", "L", locators), ("clamp", "K", clamps))
+    for role, letter, chosen in roles:
+        leaving = [e for e in asked.elements if e.role == role and e.name not in after]
+        coming = [int(i) for i in chosen if known[int(i)] is None]
+        pairs = _nearest_pairs(problem, leaving, coming)
+        fresh = fresh_names(letter, taken)
+        for index in coming:
+            old = pairs.get(index)
+            element = _placed(problem, index, old, role, next(fresh) if old is None else old.name)
+            elements[element.name] = element
+            steps.append(_step(problem, "added" if old is None else "moved", element.name, index, locators, clamps))
+        for element in leaving:
+            if element not in pairs.values():
+                del elements[element.name]
+                steps.append(Step("removed", element.name, "in the way"))
+    return replace(asked, elements=tuple(elements.values())), steps
+
+
+def _nearest_pairs(problem: Problem, leaving: Sequence[Element], coming: Sequence[int]) -> dict[int, Element]:
+    """Which of those that come takes the place of which that leaves: short ways first."""
+    away = sorted(
+        (float(np.linalg.norm(problem.candidates.places[index] - element.at)), number, index)
+        for number, element in enumerate(leaving)
+        for index in coming
+    )
+    pairs: dict[int, Element] = {}
+    for _, number, index in away:
+        if index not in pairs and leaving[number] not in pairs.values():
+            pairs[index] = leaving[number]
+    return pairs
+
+
+def _placed(problem: Problem, index: int, old: Element | None, role: Role, name: str) -> Element:
+    at = read_only(problem.candidates.places[index])
+    if old is None:
+        return Element(name, role, at)
+    tip: Tip = old.tip if isinstance(old.tip, _ANYWHERE) else PointTip()
+    return replace(old, at=at, tip=tip, axis=None)
+
+
+def _step(
+    problem: Problem, action: Literal["added", "moved"], name: str, index: int, locators: Indices, clamps: Indices
+) -> Step:
+    """What the others leave free, that this one stops; or do not notice, that it notices."""
+    others = [int(i) for i in (*locators, *clamps, *problem.clamps) if int(i) != index]
+    motion = stopped(problem, others, index) if problem.closes is not None else None
+    why: Literal["free", "unnoticed"] = "free"
+    if motion is None:
+        why, motion = "unnoticed", unnoticed(problem, [int(i) for i in locators if int(i) != index], index)
+    world = None if motion is None else in_world(motion, problem.candidates.scale)
+    return Step(action, name, why, world)
+
+
+def raised(before: Layout, after: Layout) -> Iterator[Step]:
+    """A step for each preload that is another one."""
+    old = {element.name: element.preload for element in before.elements}
+    for element in after.elements:
+        if element.role == "clamp" and element.preload != old.get(element.name):
+            yield Step("preloaded", element.name, "loads", preload=element.preload)

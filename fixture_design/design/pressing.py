@@ -1,0 +1,220 @@
+"""Clamps placed so that they push as little as they can: column generation, then the best few of what it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import combinations, islice
+
+import numpy as np
+
+from fixture_design.arrays import Indices
+from fixture_design.design.clamping import margins
+from fixture_design.design.problem import Problem
+from fixture_design.design.pushing import Program, Pushes
+from fixture_design.tolerances import DEFAULT, GOOD_MARGIN
+
+#: Rounds of column generation, and candidates that join in each.
+_MOST_ROUNDS, _AT_ONCE = 40, 4
+#: Sets of clamps that are compared, and swaps that are tried one after the other without gain.
+_MOST_SETS, _MOST_SWAPS = 60, 12
+#: Locators outside that are tried in an exchange.
+_MOST_HELPFUL = 32
+#: A set is better if it pushes less by this part of it [-].
+_BETTER = 1e-6
+#: Clamps more than the fewest that close that are tried where these cannot hold the loads.
+_MOST_MORE = 3
+
+
+def least_of_all(problem: Problem, program: Program, locators: Indices, clamps: Indices) -> tuple[Indices, Pushes]:
+    """Clamps that together push as little as any of the candidates could with these locators, and their pushes.
+
+    Some of them push with nothing. The total is a lower bound for any clamps of any number.
+    """
+    chosen = np.array(clamps, dtype=np.int64)
+    pool = np.setdiff1d(problem.clampable, locators)
+    for _ in range(_MOST_ROUNDS):
+        pushes = program.least(locators, chosen)
+        outside = np.setdiff1d(pool, chosen)
+        worth = program.worth(pushes.duals, outside)
+        best = outside[np.argsort(-worth)[:_AT_ONCE]]
+        best = best[program.worth(pushes.duals, best) > 1 + DEFAULT.near]
+        if not len(best):
+            break
+        chosen = np.concatenate([chosen, best])
+    return chosen, program.least(locators, chosen)
+
+
+def least_bound(problem: Problem, program: Program, pool: Indices) -> tuple[float | None, Indices]:
+    """No locators of ``pool``, with clamps anywhere, need less preload in all [N], None where that is not known; and
+    the locators that would react then, most first.
+    """
+    locators, clamps = np.array(problem.locators, dtype=np.int64), np.array(problem.clamps, dtype=np.int64)
+    low = np.where(np.isin(np.arange(len(problem.candidates)), clamps), program.duties.low, 0.0)
+    program = replace(program, duties=replace(program.duties, low=low, pressed=program.duties.pressed & False))
+    pool = np.setdiff1d(pool, locators)
+    for _ in range(_MOST_ROUNDS):
+        pushes = program.least(locators, clamps)
+        more = _worth_it(program.use(pushes.duals, pool), pool, 0.0)
+        some = _worth_it(program.worth(pushes.duals, problem.clampable), problem.clampable, 1.0)
+        more, some = np.setdiff1d(more, locators), np.setdiff1d(some, clamps)
+        if not len(more) and not len(some):
+            reacting = np.argsort(-pushes.reactions)[: int((pushes.reactions > 0).sum())]
+            return pushes.total, locators[reacting]
+        locators, clamps = np.concatenate([locators, more]), np.concatenate([clamps, some])
+    return None, locators
+
+
+def _worth_it(values: np.ndarray, pool: Indices, least: float) -> Indices:
+    best = np.argsort(-values)[:_AT_ONCE]
+    return pool[best[values[best] > least + DEFAULT.near]]
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """Clamps, a lower bound of the margin of closure with them, and what they push with in all [N]."""
+
+    clamps: Indices
+    margin: float
+    total: float
+    holds: bool
+
+
+def pressed_clamps(problem: Problem, program: Program, locators: Indices, clamps: Indices) -> Pressed:
+    """The clamps moved to where they push least, and more of them where they cannot hold what has to be held.
+
+    They stay where they are if the margin of closure is to come first and they hold the loads.
+    """
+    total = program.least(locators, clamps).total
+    order = problem.objective
+    margin_first = "margin" in order and ("preload" not in order or order.index("margin") < order.index("preload"))
+    if not (margin_first and np.isfinite(total)):
+        clamps, total = _least_of_as_many(problem, program, locators, clamps)
+    most = problem.limits.clamps if problem.limits.clamps is not None else len(clamps) + _MOST_MORE
+    while program.duties.required and not np.isfinite(total) and len(clamps) < most:
+        found, pushes = least_of_all(problem, program, locators, clamps)
+        more = [i for i in found[np.argsort(-pushes.each)].tolist() if _joins(problem, locators, clamps, i)]
+        if not more:
+            break
+        clamps, total = _least_of_as_many(problem, program, locators, np.append(clamps, more[0]))
+    holds = bool(np.isfinite(total)) or not program.duties.required
+    return Pressed(clamps, _margin(problem, locators, clamps), total, holds)
+
+
+def _joins(problem: Problem, locators: Indices, clamps: Indices, candidate: int) -> bool:
+    others = np.concatenate([locators, clamps])
+    return candidate not in others and bool(problem.joins(np.array([candidate]), others)[0])
+
+
+def _margin(problem: Problem, locators: Indices, clamps: Indices) -> float:
+    if problem.closes is None:
+        return 0.0
+    return float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
+
+
+def _least_of_as_many(problem: Problem, program: Program, locators: Indices, clamps: Indices) -> tuple[Indices, float]:
+    """As many clamps in the places where they push least and still close well, and what they push with in all [N]."""
+    staying = clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]
+    moving = np.setdiff1d(clamps, staying)
+    least_margin = min(_margin(problem, locators, clamps), GOOD_MARGIN) * (1 - _BETTER)
+
+    def fits(some: Indices) -> bool:
+        for place in range(len(some)):
+            others = np.concatenate([locators, staying, np.delete(some, place)]).astype(np.int64)
+            if not problem.joins(some[[place]], others)[0]:
+                return False
+        return problem.closes is None or _margin(problem, locators, np.concatenate([staying, some])) >= least_margin
+
+    best, total = np.array(clamps, dtype=np.int64), program.least(locators, clamps).total
+    found, pushes = least_of_all(problem, program, locators, clamps)
+    if not np.isfinite(pushes.total):
+        return best, total
+    useful = np.union1d(np.setdiff1d(found[pushes.each > 0], staying), moving)
+    for some in islice(combinations(useful.tolist(), len(moving)), _MOST_SETS):
+        if fits(np.array(some, dtype=np.int64)):
+            least = program.least(locators, np.concatenate([staying, some]).astype(np.int64)).total
+            if least < total * (1 - _BETTER):
+                best, total = np.concatenate([staying, some]).astype(np.int64), least
+        if total <= pushes.total * (1 + _BETTER):
+            return best, total
+    return _swapped(problem, program, locators, staying, best, total, fits)
+
+
+def _swapped(
+    problem: Problem,
+    program: Program,
+    locators: Indices,
+    staying: Indices,
+    best: Indices,
+    total: float,
+    fits: Callable[[Indices], bool],
+) -> tuple[Indices, float]:
+    """After swaps of one clamp for another one that the dual values recommend."""
+    failures = 0
+    while failures < _MOST_SWAPS and np.isfinite(total):
+        before = total
+        duals = program.least(locators, best).duals
+        outside = np.setdiff1d(problem.clampable, np.concatenate([locators, best]))
+        order = outside[np.argsort(-program.worth(duals, outside))[:_AT_ONCE]]
+        for new in order.tolist():
+            for old in np.setdiff1d(best, staying).tolist():
+                failures += 1
+                moved = np.append(best[best != old], new)
+                if not fits(np.setdiff1d(moved, staying)):
+                    continue
+                least = program.least(locators, moved).total
+                if least < total * (1 - _BETTER):
+                    best, total, failures = moved, least, 0
+                    break
+            if total < before:
+                break
+        if total >= before:
+            break
+    return best, total
+
+
+def pressed_together(
+    problem: Problem, program: Program, pool: Indices, locators: Indices, pressed: Pressed
+) -> tuple[Indices, Pressed]:
+    """Locators exchanged too, one after the other, as long as the clamps can push less for it.
+
+    A locator can only help if the dual values say that its reactions would (`Program.use`).
+    """
+    for _ in range(_MOST_ROUNDS):
+        better = _exchanged_once(problem, program, pool, locators, pressed)
+        if better is None or problem.cancelled():
+            break
+        locators = better
+        pressed = pressed_clamps(problem, program, locators, pressed.clamps)
+    return locators, pressed
+
+
+def _exchanged_once(
+    problem: Problem, program: Program, pool: Indices, locators: Indices, pressed: Pressed
+) -> Indices | None:
+    """The first exchange found that makes the clamps push less; None where there is none."""
+    pushes = program.least(locators, pressed.clamps)
+    outside = np.setdiff1d(pool, np.concatenate([locators, pressed.clamps]))
+    use = program.use(pushes.duals, outside)
+    helpful = outside[np.argsort(-use)][: min(_MOST_HELPFUL, int((use > DEFAULT.near).sum()))]
+    movable = [place for place in range(len(locators)) if locators[place] not in problem.locators]
+    least_margin = min(pressed.margin, GOOD_MARGIN) * (1 - _BETTER)
+    for new in helpful.tolist():
+        for place in movable:
+            moved = locators.copy()
+            moved[place] = new
+            others = np.concatenate([np.delete(locators, place), pressed.clamps])
+            if not problem.joins(np.array([new]), others)[0] or not _locates(problem, moved):
+                continue
+            if problem.closes is not None and _margin(problem, moved, pressed.clamps) < least_margin:
+                continue
+            if program.least(moved, pressed.clamps).cost < pushes.cost * (1 - _BETTER):
+                return moved
+    return None
+
+
+def _locates(problem: Problem, locators: Indices) -> bool:
+    """Whether they notice all that the candidates together can."""
+    values = np.linalg.svd(problem.rows[problem.rows_of(locators)], compute_uv=False)
+    freedoms = problem.candidates.freedoms
+    return len(values) >= freedoms and bool(values[freedoms - 1] > problem.candidates.tolerances.near * values[0])

@@ -1,0 +1,134 @@
+"""Logs of wrenches and displacements as CSV.
+
+The first line names the columns, in any order: t, fx, fy, fz, mx, my, mz, and for displacements dx, dy, dz, rx, ry, rz;
+in the plane t, fx, fy, mz, and dx, dy, rz, where the others may be there and are left out. A name may be followed by
+its unit in brackets, which must be that of the column: `fx [N]`, `mz [N m]`, `t [s]`, `dx [m]`, `rz [rad]`. Blank
+lines, and lines that begin with #, are left out. A row's number counts the others from 1.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from fixture_design.errors import FileFormatError
+from fixture_design.io.documents import read_bytes
+from fixture_design.recognition.log import Log
+from fixture_design.tolerances import MOST_FORCE
+
+_WRENCH = {2: ("fx", "fy", "mz"), 3: ("fx", "fy", "fz", "mx", "my", "mz")}
+_TWIST = {2: ("dx", "dy", "rz"), 3: ("dx", "dy", "dz", "rx", "ry", "rz")}
+_ALL = ("t", *_WRENCH[3], *_TWIST[3])
+
+#: The unit of a column by its first letter, and ways to write it.
+_UNITS = {
+    "t": ("s",),
+    "f": ("N",),
+    "m": ("N m", "Nm", "N*m", "N·m"),
+    "d": ("m",),
+    "r": ("rad",),
+}
+
+_HEADING = re.compile(r"\s*([^\s\[\](]+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
+
+
+def read_log(path: str | Path, plane: int) -> Log:
+    """The log in a CSV file.
+
+    Args:
+        plane: 2 in the plane, 3 in space.
+
+    Raises:
+        FileFormatError: the file cannot be read, is empty, has not the columns, or other units, or a cell is no finite
+            number of a plausible size; with line, row and column.
+    """
+    path = Path(path)
+    lines = _lines(path)
+    header = next(lines, None)
+    if header is None:
+        raise FileFormatError("the log is empty", source=path, expected=_expected(plane))
+    columns = _columns(header[1], path, header[0], plane)
+    wanted = ["t", *_WRENCH[plane], *(_TWIST[plane] if _TWIST[plane][0] in columns else ())]
+    places = [columns.index(name) for name in wanted]
+    rows = [
+        [_number(cells[k], name, path, line, row) for k, name in zip(places, wanted, strict=True)]
+        for row, (line, cells) in enumerate(_checked(lines, len(columns), path), start=1)
+    ]
+    if not rows:
+        raise FileFormatError("the log has a header and no rows", source=path, expected="a row for each sample")
+    size = len(_WRENCH[plane])
+    twists = [row[1 + size :] for row in rows] if len(wanted) > 1 + size else None
+    return Log.of([row[0] for row in rows], [row[1 : 1 + size] for row in rows], twists)
+
+
+def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Line numbers and cells of the lines that say something."""
+    try:
+        text = read_bytes(path).decode("utf-8-sig")
+    except UnicodeDecodeError as cause:
+        raise FileFormatError("the log is no text in UTF-8", source=path) from cause
+    reader = csv.reader(text.splitlines())
+    try:
+        for cells in reader:
+            stripped = [cell.strip() for cell in cells]
+            if any(stripped) and not stripped[0].startswith("#"):
+                yield reader.line_num, stripped
+    except csv.Error as cause:
+        raise FileFormatError(f"the log is no CSV: {cause}", source=path, place=f"line {reader.line_num}") from cause
+
+
+def _columns(headings: Sequence[str], path: Path, line: int, plane: int) -> list[str]:
+    place = f"line {line}"
+    names = [_name(heading, path, place) for heading in headings]
+    if twice := [name for name in dict.fromkeys(names) if names.count(name) > 1]:
+        raise FileFormatError(f"the column {twice[0]!r} is there twice", source=path, place=place)
+    twist = [name for name in _TWIST[plane] if name in names]
+    missing = [name for name in ("t", *_WRENCH[plane], *(_TWIST[plane] if twist else ())) if name not in names]
+    if missing:
+        problem = f"the log has no column {', '.join(map(repr, missing))}"
+        raise FileFormatError(problem, source=path, place=place, expected=_expected(plane))
+    return names
+
+
+def _name(heading: str, path: Path, place: str) -> str:
+    """The column's name; its unit, where one is given, must be the right one."""
+    match = _HEADING.fullmatch(heading)
+    name = match[1] if match else heading
+    if match is None or name not in _ALL:
+        raise FileFormatError(
+            f"unknown column {heading!r:.60}", source=path, place=place, expected=f"some of {', '.join(_ALL)}"
+        )
+    units = _UNITS[name[0]]
+    if match[2] is not None and match[2] not in units:
+        raise FileFormatError(
+            f"the column {name!r} is in another unit", source=path, place=place, found=match[2] or "no unit",
+            expected=units[0],
+        )  # fmt: skip
+    return name
+
+
+def _checked(lines: Iterator[tuple[int, list[str]]], count: int, path: Path) -> Iterator[tuple[int, list[str]]]:
+    for row, (line, cells) in enumerate(lines, start=1):
+        if len(cells) != count:
+            problem = f"row {row} has {len(cells)} cells for {count} columns"
+            raise FileFormatError(problem, source=path, place=f"line {line}")
+        yield line, cells
+
+
+def _number(cell: str, column: str, path: Path, line: int, row: int) -> float:
+    place = f"line {line}, row {row}, column {column}"
+    try:
+        value = float(cell) if "_" not in cell else math.nan
+    except ValueError as cause:
+        raise FileFormatError("a number is missing", source=path, place=place, found=f"{cell!r:.60}") from cause
+    if not abs(value) <= MOST_FORCE:
+        wanted = f"a finite number up to {MOST_FORCE:g}"
+        raise FileFormatError("not a usable number", source=path, place=place, found=f"{cell!r:.60}", expected=wanted)
+    return value
+
+
+def _expected(plane: int) -> str:
+    return f"the columns t, {', '.join(_WRENCH[plane])} and perhaps {', '.join(_TWIST[plane])}"

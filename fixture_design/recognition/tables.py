@@ -1,0 +1,119 @@
+"""Discriminants of all transitions as plain tables, for evaluation here and in exported code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fixture_design.arrays import ArrayLike, Indices, Rows, Weights
+from fixture_design.errors import InputError
+from fixture_design.recognition.classifier import Classifier
+from fixture_design.recognition.measurement import oriented_rows
+from fixture_design.tolerances import DEFAULT
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """DT of all transitions (4-26) in arrays.
+
+    A measurement passes a group if a . s <= bound for all its faces; a transition is possible if one of its groups is
+    passed. Faces of a group are ``chosen[group_start[g] : group_start[g + 1]]``, groups of a transition
+    ``transition_start[t] : transition_start[t + 1]``, transitions of a source likewise by ``source_start``.
+
+    Attributes:
+        rows: unit face vectors a, of the signal's numbers, shape (m, k).  bounds: shape (m,).
+        chosen, group_start, transition_start, target, source_start: see above; targets and sources are rows of the
+            classifier's states.
+    """
+
+    rows: Rows
+    bounds: Weights
+    chosen: Indices
+    group_start: Indices
+    transition_start: Indices
+    target: Indices
+    source_start: Indices
+
+    @classmethod
+    def of(cls, classifier: Classifier) -> Tables:
+        """The tables of a classifier, with only those faces that some transition needs.
+
+        Raises:
+            InputError: a classifier without discriminants.
+        """
+        if not classifier.transitions:
+            raise InputError("this classifier has no discriminants", expected="one that was built with them")
+        ids = list(classifier.ids)
+        tables = _Growing(classifier)
+        transition_start, target, source_start = [0], [], [0]
+        for source in ids:
+            for transition in (some for some in classifier.transitions if some.source == source):
+                for cone, faces in enumerate(transition.faces):
+                    tables.add(transition.target, cone, faces)
+                transition_start.append(len(tables.group_start) - 1)
+                target.append(ids.index(transition.target))
+            source_start.append(len(target))
+        indices = (tables.chosen, tables.group_start, transition_start, target, source_start)
+        rows = np.array(tables.rows).reshape(-1, classifier.signals.size)
+        return cls(rows, np.array(tables.bounds), *(np.array(some, dtype=int) for some in indices))
+
+    def possible(self, signal: np.ndarray, source: int) -> list[int]:
+        """Rows of the states that may follow a state."""
+        passed = self.rows @ signal <= self.bounds
+        return [
+            int(self.target[t])
+            for t in range(self.source_start[source], self.source_start[source + 1])
+            if any(
+                passed[self.chosen[self.group_start[g] : self.group_start[g + 1]]].all()
+                for g in range(self.transition_start[t], self.transition_start[t + 1])
+            )
+        ]
+
+
+class _Growing:
+    """Tables while they are made: each face once."""
+
+    def __init__(self, classifier: Classifier) -> None:
+        self.rows: list[np.ndarray] = []
+        self.bounds: list[float] = []
+        self.chosen: list[int] = []
+        self.group_start = [0]
+        self._known: dict[tuple[str, int, int], int] = {}
+        self._faces = {
+            (state.id, k): oriented_rows(cone)
+            for state in classifier.states
+            for k, cone in enumerate(state.measured.cones)
+        }
+        self._noise, self._force_size = classifier.noise, classifier.signals.force_size
+        self._widening = {state.id: state.measured.widening for state in classifier.states}
+
+    def add(self, state: str, cone: int, faces: tuple[int, ...]) -> None:
+        for face in faces:
+            key = (state, cone, face)
+            if key not in self._known:
+                self._known[key] = len(self.rows)
+                row = self._faces[state, cone][face]
+                of_force = bool(np.abs(row[: self._force_size]).max(initial=0.0) > 0)
+                widening = self._widening[state]
+                block = "force" if of_force else "displacement"
+                self.rows.append(row)
+                self.bounds.append(getattr(widening, block) + getattr(self._noise, block) + DEFAULT.tie)
+            self.chosen.append(self._known[key])
+        self.group_start.append(len(self.chosen))
+
+
+def discriminated(
+    classifier: Classifier, tables: Tables, source: str, wrench: ArrayLike | None, twist: ArrayLike | None = None
+) -> tuple[str, ...]:
+    """The states that the discriminants leave after ``source``: those whose DT holds the measurement.
+
+    Sure only of measurements that are in the set of some successor: between these the discriminants tell as the whole
+    sets do, and of others they say nothing.
+
+    Raises:
+        InputError, UnknownNameError: as `Classifier.recognize`.
+    """
+    signal = classifier.signals.signal(wrench, twist, classifier.noise.floor)
+    row = classifier.ids.index(classifier.state(source).id)
+    return tuple(classifier.ids[k] for k in sorted(tables.possible(signal, row)))

@@ -1,0 +1,174 @@
+"""Preloads: the search's linear program against vertices, brute force over clamps, and verdicts."""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+
+from fixture_design.arrays import Points
+from fixture_design.design import CandidateRules, DesignResult, Limits, Task, design
+from fixture_design.design.duties import Duties, scaled
+from fixture_design.design.pushing import Program
+from fixture_design.layout import Answer, Load, Part, Pose
+from fixture_design.verification import check
+from tests.design.fakes import candidates, polygon
+
+RECTANGLE = np.array([[0.0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]])
+REQUIRE = {"locators": ("deterministic", "loadable"), "all": ("form_closure", "holds_loads")}
+
+
+def plate(corners: Points = RECTANGLE, **keys: object) -> Task:
+    part = Part("polygon", "polygon", None, corners, 1.0, Pose.identity(2))
+    return Task("plate", part, "planar", **{"require": REQUIRE, **keys})  # type: ignore[arg-type]
+
+
+def load(force: tuple[float, float], point: tuple[float, float] = (0.1, 0.05), name: str = "push") -> Load:
+    return Load(name, point=np.array(point), force=np.array(force))
+
+
+def sure(result: DesignResult) -> float:
+    assert result.satisfied is Answer.YES, result.reason
+    assert result.verdict is not None
+    assert check(result.verdict) == []
+    assert result.preload is not None
+    return result.preload
+
+
+def program(corners: Points, count: int, wrenches: Points, most: float = 1e6) -> Program:
+    some = candidates(polygon(corners, count))
+    rows = some.pushes(rough=False)
+    flags = np.zeros(len(wrenches), dtype=bool)
+    limits = np.zeros(len(some)), np.full(len(some), most)
+    return Program(rows, rows, Duties(wrenches, flags, flags, *limits))
+
+
+def by_vertices(rows: Points, locators: list[int], clamps: list[int], wrench: Points) -> float:
+    """min sum p over the vertices of {p >= 0 : D^-T (w - sum p d) >= 0}."""
+    inverse = np.linalg.inv(rows[locators].T)
+    a, b = inverse @ rows[clamps].T, inverse @ wrench
+    half = np.vstack([np.column_stack([a, b]), np.column_stack([-np.eye(len(clamps)), np.zeros(len(clamps))])])
+    best = np.inf
+    for some in combinations(range(len(half)), len(clamps)):
+        chosen = half[list(some)]
+        if abs(np.linalg.det(chosen[:, :-1])) > 1e-9:
+            p = np.linalg.solve(chosen[:, :-1], chosen[:, -1])
+            if (half[:, :-1] @ p <= half[:, -1] + 1e-9).all():
+                best = min(best, float(p.sum()))
+    return best
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_program_is_that_of_its_vertices(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    wrench = rng.normal(size=3)
+    one = program(RECTANGLE + 0.05 * rng.uniform(-1, 1, (4, 2)), 4, wrench[None])
+    rows = one.smooth[:, 0]
+    places = rng.permutation(len(rows)).tolist()
+    locators, clamps = places[:3], places[3:5]
+    if abs(np.linalg.det(rows[locators])) < 1e-6:
+        locators[2] = places[5]
+    expected = by_vertices(rows, locators, clamps, wrench)
+    found = one.least(np.array(locators), np.array(clamps)).total
+    assert found == pytest.approx(expected, rel=1e-6) if np.isfinite(expected) else np.isinf(found)
+
+
+def test_worth_is_what_a_clamp_saves() -> None:
+    rng = np.random.default_rng(1)
+    one = program(RECTANGLE, 6, rng.normal(size=(2, 3)))
+    locators, clamps = np.array([1, 4, 20]), np.array([8, 14])
+    before = one.least(locators, clamps)
+    others = np.setdiff1d(np.arange(len(one.smooth)), [*locators, *clamps])
+    for other, worth in zip(others.tolist(), one.worth(before.duals, others).tolist(), strict=True):
+        after = one.least(locators, np.append(clamps, other))
+        assert after.cost <= before.cost * (1 + 1e-9)
+        assert worth > 1 - 1e-6 or after.cost == pytest.approx(before.cost, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 20))])
+def test_preloads_of_the_fewest_against_brute_force(seed: int) -> None:
+    """No layout with as few clamps pushes less than the bound; ours is told how far from it it may be."""
+    rng = np.random.default_rng(seed)
+    corners = RECTANGLE + 0.03 * rng.uniform(-1, 1, (4, 2))
+    points = polygon(corners, 3).points
+    force = tuple(100 * rng.normal(size=2))
+    rules = CandidateRules(points=points)
+    result = design(plate(corners, candidates=rules, loads=(load(force),), objective=("fewest", "preload")))
+    found = sure(result)
+    assert result.layout is not None
+    assert result.best_preload is not None
+    clamps = sum(element.role == "clamp" for element in result.layout.elements)
+    best = fewest_by_brute_force(corners, clamps, force)
+    assert result.best_preload <= best * (1 + 1e-6)
+    assert found >= best * (1 - 1e-4)  # or brute force is wrong
+    assert found <= 2 * best + 1e-3 * np.linalg.norm(force)
+
+
+def fewest_by_brute_force(corners: Points, count: int, force: tuple[float, ...]) -> float:
+    """The least preload of three locators with a way out and so many clamps that close."""
+    spots = polygon(corners, 3)
+    some = candidates(spots)
+    rows = some.pushes(rough=False)[:, 0]
+    wrench = scaled(np.array([*force, 0.1 * force[1] - 0.05 * force[0]]), some.scale)
+    best = np.inf
+    for locators in combinations(range(len(rows)), 3):
+        away = spots.normals[list(locators)]
+        angles = np.linspace(0, 2 * np.pi, 721)
+        ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        if abs(np.linalg.det(rows[list(locators)])) < 1e-6 or not (away @ ways.T < -1e-9).all(axis=0).any():
+            continue
+        for clamps in combinations(sorted({*range(len(rows))} - {*locators}), count):
+            if np.linalg.matrix_rank(rows[[*locators, *clamps]]) == 3 and _closes(rows[[*locators, *clamps]]):
+                best = min(best, by_vertices(rows, list(locators), list(clamps), wrench))
+    return best
+
+
+def _closes(rows: Points) -> bool:
+    """Positive weights that balance, by vertices: some one-dimensional null vector combination is positive."""
+    from scipy.optimize import linprog  # noqa: PLC0415 - slow to import
+
+    found = linprog(np.zeros(len(rows)), A_eq=rows.T, b_eq=np.zeros(3), bounds=(1e-3, None), method="highs")
+    return found.x is not None
+
+
+def test_a_load_that_presses_into_the_locators_needs_no_preload() -> None:
+    result = design(plate(loads=(load((-100.0, -50.0)),), objective=("fewest", "preload")))
+    assert sure(result) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_preloads_keep_within_the_limits_and_hold_with_more_clamps_or_not_at_all() -> None:
+    keys = {
+        "loads": (load((300.0, 0.0)), load((-300.0, 0.0), name="pull")),
+        "objective": ("fewest", "accuracy", "preload"),
+    }
+    wide = design(plate(**keys))  # type: ignore[arg-type]
+    assert sure(wide) >= 300.0
+    tight = design(plate(limits=Limits(preload=(0.0, 200.0)), **keys))  # type: ignore[arg-type]
+    sure(tight)
+    assert tight.layout is not None
+    pushes = [element.preload for element in tight.layout.elements if element.role == "clamp"]
+    assert max(p for p in pushes if p is not None) <= 200.0
+    assert len(pushes) >= 2
+    hopeless = design(plate(limits=Limits(preload=(0.0, 1.0), clamps=2), **keys))  # type: ignore[arg-type]
+    assert hopeless.satisfied is Answer.NO
+    assert hopeless.layout is None
+    assert "preload" in (hopeless.reason or "")
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_the_part_sits_where_that_is_asked(friction: float) -> None:
+    require = {"locators": ("deterministic", "loadable"), "all": ("seated", "holds_loads")}
+    require["all"] = ("force_closure" if friction else "form_closure", *require["all"])
+    keys = {"require": require, "friction": friction, "loads": (load((50.0, 20.0)),)}
+    result = design(plate(**keys))  # type: ignore[arg-type]
+    assert sure(result) > 0
+    assert result.verdict is not None
+    assert result.verdict.groups["all"].findings["seated"].answer is Answer.YES
+
+
+@pytest.mark.parametrize(("x", "y"), [*product((0.02, 0.18), (0.02, 0.08))])
+def test_a_moment_is_held_wherever_it_acts(x: float, y: float) -> None:
+    result = design(plate(loads=(load((0.0, 80.0), (x, y)),), objective=("fewest", "accuracy", "preload")))
+    assert result.best_preload_here is not None
+    assert sure(result) >= result.best_preload_here * (1 - 1e-6)

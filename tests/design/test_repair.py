@@ -1,0 +1,152 @@
+"""Repair: the fewest changes, against brute force; what is fixed stays; the result holds."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from fixture_design.cones.kernel import closure_test, closure_tests
+from fixture_design.contacts import Role
+from fixture_design.design import DesignResult, repair
+from fixture_design.layout import Answer, Element, Layout, Part, Pose
+from fixture_design.verification import check
+from tests.design.fakes import Fake, Spots, box, candidates, polygon
+
+CORNERS = np.array([[0.0, 0], [2, 0], [2.3, 1.1], [0, 1]])
+LOADABLE = {"locators": ("deterministic", "loadable"), "all": ("form_closure",)}
+OPEN = {"locators": ("deterministic", "strongly_accessible"), "all": ("form_closure",)}
+
+
+def layout(spots: Spots, elements: list[Element], require: object) -> Layout:
+    p = spots.points.shape[1]
+    part = Part("fake", "polygon", None, None, 1.0, Pose.identity(p))
+    space = "planar" if p == 2 else "spatial"
+    return Layout("given", space, part, elements=tuple(elements), require=require)  # type: ignore[arg-type]
+
+
+def drawn(spots: Spots, seed: int, count: int, fixed: int = 0) -> list[Element]:
+    rng = np.random.default_rng(seed)
+    places = rng.choice(len(spots.points), count, replace=False)
+    roles: list[Role] = ["locator", "locator", "locator", "clamp"]
+    return [
+        Element(f"E{k}", roles[rng.integers(4)], spots.points[place], fixed=k < fixed)
+        for k, place in enumerate(places.tolist())
+    ]
+
+
+def holds(spots: Spots, locators: tuple[int, ...], clamps: tuple[int, ...], *, straight: bool) -> bool:
+    rows = candidates(spots).rows[:, 0]
+    if len(locators) < rows.shape[1] or np.linalg.matrix_rank(rows[list(locators)], 1e-7) < rows.shape[1]:
+        return False
+    away = np.ascontiguousarray((spots.normals if straight else rows)[list(locators)])
+    tests = closure_tests(away, np.array([0, len(away)]), np.arange(len(away)))
+    return tests.leaves[0] == 1 and closure_test(rows[[*locators, *clamps]]).closes == 1
+
+
+def fewest(spots: Spots, elements: list[Element], most: int, *, straight: bool) -> int:
+    """The fewest changes by trying all sets of locators and clamps that so many changes lead to."""
+    at = {e.name: int(np.argmin(np.linalg.norm(spots.points - e.at, axis=1))) for e in elements}
+    old = {role: {at[e.name] for e in elements if e.role == role} for role in ("locator", "clamp")}
+    fixed = {role: {at[e.name] for e in elements if e.role == role and e.fixed} for role in ("locator", "clamp")}
+
+    def reached(role: str, changes: int) -> set[tuple[int, ...]]:
+        sets = set()
+        for out in range(changes + 1):
+            for into in range(changes + 1):
+                if max(out, into) != changes:
+                    continue
+                for leaving in combinations(sorted(old[role] - fixed[role]), out):
+                    others = sorted(set(range(len(spots.points))) - old[role])
+                    for coming in combinations(others, into):
+                        sets.add(tuple(sorted((old[role] - set(leaving)) | set(coming))))
+        return sets
+
+    for changes in range(most + 1):
+        for some in range(changes + 1):
+            for locators in reached("locator", some):
+                for clamps in reached("clamp", changes - some):
+                    if not set(locators) & set(clamps) and holds(spots, locators, clamps, straight=straight):
+                        return changes
+    return most + 1
+
+
+def confirm(result: DesignResult, elements: list[Element]) -> None:
+    assert result.satisfied is Answer.YES, result.reason
+    assert result.layout is not None
+    assert result.verdict is not None
+    assert check(result.verdict) == []
+    assert result.changes is not None
+    after = {e.name: e for e in result.layout.elements}
+    before = {e.name: e for e in elements}
+    assert all(after[e.name] is e for e in elements if e.fixed)
+    changed = {name for name in {*after, *before} if after.get(name) is not before.get(name)}
+    assert changed == {step.element for step in result.steps}
+    assert len(result.steps) == result.changes.found
+    for step in result.steps:
+        assert step.action == (
+            "added" if step.element not in before else "removed" if step.element not in after else "moved"
+        )
+
+
+@pytest.mark.parametrize("require", [LOADABLE, OPEN], ids=["straight", "any motion"])
+@pytest.mark.parametrize("seed", [*range(8), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(8, 60))])
+def test_no_fewer_changes_make_it_right(seed: int, require: dict[str, tuple[str, ...]]) -> None:
+    spots = polygon(CORNERS + 0.2 * np.random.default_rng(seed).uniform(-1, 1, (4, 2)), 3)
+    elements = drawn(spots, seed, 3 + seed % 4, seed % 2)
+    answers = frozenset({"deterministic", "strongly_accessible", "form_closure", "loadable"})
+    result = repair(layout(spots, elements, require), Fake(spots, answers))
+    straight = "loadable" in require["locators"]
+    most = 2
+    least = fewest(spots, elements, most, straight=straight)
+    if result.satisfied is Answer.NO:
+        assert least > most
+        return
+    assert result.changes is not None
+    assert result.changes.proven
+    assert result.changes.found == least or (least > most and result.changes.found > most)
+    confirm(result, elements)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_spatial_layouts_are_repaired_and_fixed_elements_stay(seed: int) -> None:
+    spots = box(6, seed)
+    elements = drawn(spots, seed, 4 + seed, seed % 3)
+    result = repair(layout(spots, elements, OPEN), Fake(spots))
+    if result.satisfied is Answer.NO:
+        assert seed % 3
+        return
+    confirm(result, elements)
+
+
+def test_a_layout_that_holds_is_left_alone() -> None:
+    spots = polygon(CORNERS, 5)
+    first = repair(layout(spots, [], OPEN), Fake(spots))
+    assert first.layout is not None
+    again = repair(first.layout, Fake(spots))
+    assert again.changes is not None
+    assert again.changes.found == 0
+    assert again.changes.proven
+    assert again.layout is first.layout
+
+
+def test_a_clamp_too_few_is_one_change() -> None:
+    spots = box(6, 1)
+    first = repair(layout(spots, [], OPEN), Fake(spots))
+    assert first.layout is not None
+    clamp = next(e for e in first.layout.elements if e.role == "clamp")
+    without = [e for e in first.layout.elements if e is not clamp]
+    result = repair(layout(spots, without, OPEN), Fake(spots))
+    confirm(result, without)
+    assert [step.action for step in result.steps] == ["added"]
+
+
+def test_a_locator_on_the_wrong_side_is_moved() -> None:
+    spots = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 5)
+    places = {"L1": (0.5, 0.0), "L2": (1.5, 0.0), "L3": (1.0, 1.0)}  # between two sides: nothing stops it along x
+    nearest = {name: np.argmin(np.linalg.norm(spots.points - at, axis=1)) for name, at in places.items()}
+    elements = [Element(name, "locator", spots.points[place]) for name, place in nearest.items()]
+    result = repair(layout(spots, elements, {"locators": ("deterministic", "strongly_accessible")}), Fake(spots))
+    confirm(result, elements)
+    assert [step.action for step in result.steps] == ["moved"]

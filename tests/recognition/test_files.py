@@ -1,0 +1,231 @@
+"""Classifier files, logs, sensors, exported code, and the two commands."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import runpy
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fixture_design.assembly import ContactStateGraph
+from fixture_design.errors import FileFormatError, InputError
+from fixture_design.io import json_schema, read_classifier, read_log, write_classifier, write_graph
+from fixture_design.layout import Pose
+from fixture_design.recognition import Classifier, Log, Sensor, c_source, numpy_source, recognize_log
+from fixture_design.recognition.tables import Tables, discriminated
+from tests.cli.conftest import command  # noqa: F401 - a fixture
+from tests.recognition.graphs import FOUR, subgraph
+
+WRENCHES = np.random.default_rng(3).normal(size=(300, 3)) * [3, 3, 5]
+
+
+@pytest.fixture
+def file(four: Classifier, tmp_path: Path) -> Path:
+    write_classifier(four, tmp_path / "four.json")
+    return tmp_path / "four.json"
+
+
+def test_a_classifier_file_reads_back(four: Classifier, file: Path) -> None:
+    again = read_classifier(file)
+    assert (again.name, again.signals, again.noise, again.made) == (four.name, four.signals, four.noise, four.made)
+    for one, other in zip(four.states, again.states, strict=True):
+        assert (one.id, one.contacts, one.successors) == (other.id, other.contacts, other.successors)
+        assert one.measured.widening == other.measured.widening
+        for a, b in zip(one.measured.cones, other.measured.cones, strict=True):
+            np.testing.assert_array_equal(a.faces, b.faces)
+            np.testing.assert_array_equal(a.equalities, b.equalities)
+    assert [(t.source, t.target, t.faces) for t in four.transitions] == [
+        (t.source, t.target, t.faces) for t in again.transitions
+    ]
+    for wrench in WRENCHES[:50]:
+        assert again.recognize(wrench).states == four.recognize(wrench).states
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"measure": "force"', '"measure": "sound"', "'measure' is none of|sound"),
+        ('"successors": ["N1"', '"successors": ["N77"', "there is no state 'N77'"),
+        ('"source": "N1"', '"source": "N77"', "there is no state 'N77'"),
+        ('"faces": [[', '"faces": [[0.5, ', "a face vector has 4 numbers"),
+        ('"length": 1.0', '"length": -1.0', "> 0"),
+        ("fixture_design/classifier/1", "fixture_design/graph/1", "it is a contact-state graph"),
+        ("fixture_design/classifier/1", "fixture_design/classifier/2", "needs a newer"),
+    ],
+)
+def test_files_that_are_no_classifier(file: Path, old: str, new: str, words: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    with pytest.raises(FileFormatError, match=words):
+        read_classifier(file)
+
+
+def test_a_face_that_is_not_there(file: Path) -> None:
+    data = json.loads(file.read_text())
+    at = next(k for k, some in enumerate(data["transitions"]) if some["faces"][0])
+    data["transitions"][at]["faces"][0][0] = 99
+    file.write_text(json.dumps(data))
+    with pytest.raises(FileFormatError, match=rf"transitions\[{at}\].*face 99 of a cone"):
+        read_classifier(file)
+
+
+def test_the_schema() -> None:
+    assert json_schema("classifier")["$id"] == "fixture_design/classifier/1"
+
+
+LOG = "t [s], fx [N], fy, mz [N m], fz\n0, 0, -5, 1, 0\n\n# later\n0.1, 0, -5, 1.5, 0\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (LOG.replace("N m", "N mm"), r"line 1: the column 'mz' is in another unit; found N mm; expected N m"),
+        (LOG.replace("fx [N]", "fx [lbf]"), r"'fx' is in another unit; found lbf; expected N"),
+        (LOG.replace("mz [N m]", "mx"), r"the log has no column 'mz'"),
+        (LOG.replace("1.5", "nan"), r"line 5, row 2, column mz: not a usable number; found 'nan'"),
+        (LOG.replace("1.5", ""), r"line 5, row 2, column mz: a number is missing"),
+        (LOG.replace("1.5, 0", "1.5"), r"line 5: row 2 has 4 cells for 5 columns"),
+        (LOG.replace("1.5", "1e300"), r"row 2, column mz: not a usable number"),
+        (LOG.replace("fz", "torque"), r"unknown column 'torque'"),
+        (LOG.replace("fz", "fy"), r"the column 'fy' is there twice"),
+        (LOG.replace("fz", "dx"), r"the log has no column 'dy', 'rz'"),
+        (LOG.splitlines()[0], r"a header and no rows"),
+        ("", r"the log is empty"),
+    ],
+)
+def test_logs_that_are_none(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(text)
+    with pytest.raises(FileFormatError, match=words):
+        read_log(path, 2)
+
+
+def test_a_log(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(LOG)
+    log = read_log(path, 2)
+    np.testing.assert_array_equal(log.wrenches, [[0, -5, 1], [0, -5, 1.5]])
+    assert log.twists is None
+    path.write_text("rz,dx,dy,t,fx,fy,mz\n1,2,3,0,4,5,6\n")
+    twists = read_log(path, 2).twists
+    assert twists is not None
+    np.testing.assert_array_equal(twists, [[2, 3, 1]])
+
+
+def test_arrays_as_a_log(four: Classifier) -> None:
+    times = np.arange(len(WRENCHES), dtype=float)
+    answers = recognize_log(four, Log.of(times, WRENCHES))
+    assert len(answers) == len(WRENCHES)
+    bad = WRENCHES.copy()
+    bad[6, 1] = np.inf
+    with pytest.raises(InputError, match="row 7: the wrench is not usable"):
+        Log.of(times, bad)
+    with pytest.raises(InputError, match="the classifier is of planar parts"):
+        recognize_log(four, Log.of(times, np.zeros((len(times), 6))))
+
+
+def test_a_sensor_elsewhere() -> None:
+    """A force at a point has its moment about the part's origin, whatever the sensor's pose; work is the same."""
+    rng = np.random.default_rng(0)
+    for plane in (2, 3):
+        size = 3 * (plane - 1)
+        x, tare = rng.normal(size=plane), rng.normal(size=size)
+        pose = Pose.from_xy_theta(x, 0.7) if plane == 2 else Pose.from_xyz_rpy(x, [0.3, -0.4, 2.0])
+        sensor = Sensor.of(plane, pose, tare)
+        p_S, v_S = rng.normal(size=(5, size)), rng.normal(size=(5, size))
+        p, v = sensor.wrenches(p_S + tare), sensor.twists(v_S)
+        np.testing.assert_allclose((p * v).sum(axis=1), (p_S * v_S).sum(axis=1), atol=1e-12)
+        np.testing.assert_allclose(p[:, :plane], p_S[:, :plane] @ pose.rotation.T)
+    pure = Sensor.of(2, Pose.from_xy_theta([0.0, 2.0], 0.0)).wrenches(np.array([[1.0, 0.0, 0.0]]))
+    np.testing.assert_allclose(pure, [[1.0, 0.0, -2.0]])
+
+
+@pytest.mark.parametrize("joint", [False, True])
+def test_exported_code_says_the_same(four: Classifier, four_jointly: Classifier, tmp_path: Path, joint: bool) -> None:
+    classifier = four_jointly if joint else four
+    (tmp_path / "next.py").write_text(numpy_source(classifier))
+    functions = runpy.run_path(str(tmp_path / "next.py"))
+    tables = Tables.of(classifier)
+    twists = np.random.default_rng(9).normal(size=WRENCHES.shape) if joint else [None] * len(WRENCHES)
+    compiled = _compiled(c_source(classifier), tmp_path)
+    seen = set()
+    for wrench, twist in zip([*WRENCHES, 1e-3 * WRENCHES[0], np.zeros(3)], [*twists, None, None], strict=True):
+        for source in classifier.ids:
+            here = discriminated(classifier, tables, source, wrench, twist)
+            seen.add(here)
+            assert tuple(functions["next_states"](source, wrench, twist)) == here
+            if compiled is not None:
+                assert compiled(classifier, source, wrench, twist) == here
+    assert len(seen) > 5
+    if compiled is None:
+        pytest.skip("there is no C compiler `cc`: only the numpy function was compared")
+
+
+def _compiled(source: str, folder: Path) -> Callable | None:
+    if shutil.which("cc") is None:
+        return None
+    (folder / "next.c").write_text(source)
+    options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O2", "-shared", "-fPIC"]
+    subprocess.run(["cc", *options, "-o", "next.so", "next.c", "-lm"], cwd=folder, check=True)
+    library = ctypes.CDLL(str(folder / "next.so"))
+
+    def answer(classifier: Classifier, source: str, wrench: np.ndarray, twist: np.ndarray | None) -> tuple[str, ...]:
+        possible = (ctypes.c_ubyte * len(classifier.ids))()
+        numbers = [None if v is None else (ctypes.c_double * len(v))(*v) for v in (wrench, twist)]
+        count = library.fd_next(classifier.ids.index(source), *numbers, possible)
+        names = tuple(name for name, yes in zip(classifier.ids, possible, strict=True) if yes)
+        assert count == len(names)
+        return names
+
+    return answer
+
+
+def test_discriminants_tell_what_the_sets_tell(four: Classifier) -> None:
+    """Among forces that some successor may have made, up to the widening, which both use in their own way."""
+    exact = four.with_noise(type(four.noise)())
+    tables = Tables.of(exact)
+    for wrench in WRENCHES:
+        for source in exact.ids:
+            answer = exact.recognize(wrench, previous=source)
+            if answer.expected:
+                assert set(answer.states) <= set(discriminated(exact, tables, source, wrench))
+
+
+def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
+    write_graph(subgraph(graph, FOUR), tmp_path / "graph.json")
+    made = command(
+        "classifier", tmp_path / "graph.json", "-o", tmp_path / "c.json", "--friction", "0.1", "--noise", "0.02",
+        "--c", tmp_path / "c.c", "--python", tmp_path / "c.py",
+    )  # fmt: skip
+    assert made.code == 0, made.err
+    assert "4 states" in made.out
+    assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".c", ".py"}
+    log = tmp_path / "log.csv"
+    log.write_text("t,fx,fy,mz\n0,0,0,0\n1,0,-5,1\n2,0,-5,1\n")
+    found = command("recognize", tmp_path / "c.json", log, "--json", "--start", "N1")
+    data = json.loads(found.out)
+    assert found.code == 0
+    assert [row["t"] for row in data["rows"]] == [0, 1, 2]
+    assert "N2" in data["rows"][1]["states"]
+    assert not data["rows"][0]["told"]
+    words = command("recognize", tmp_path / "c.json", log, "--sensor", "0,0,0", "--tare-rows", "1")
+    assert "rows 2 to 3" in words.out
+    log.write_text("t,fx,fy,mz\n0,1,100,500\n")
+    assert command("recognize", tmp_path / "c.json", log).code == 3
+    log.write_text("t,fx,fy,mz\n0,1,x,500\n")
+    bad = command("recognize", tmp_path / "c.json", log)
+    assert bad.code == 2
+    assert "row 1, column fy" in bad.err
+    assert command("recognize", tmp_path / "c.json", log, "--sensor", "1,2").code == 2
+    assert command("recognize", tmp_path / "graph.json", log).code == 2
+    assert command("classifier", tmp_path / "c.json").code == 2
+    assert command("classifier", tmp_path / "graph.json", "--friction", "-1").code == 2
+    shown = command("classifier", tmp_path / "graph.json", "--json", "--interpolation", "hull")
+    assert json.loads(shown.out)["schema"] == "fixture_design/classifier/1"
