@@ -68,7 +68,7 @@ def design(
             raise error.within(task_or_part) from error
         finally:
             _shown("", 1.0)
-        _write(result, out, urdf, csv)
+        _write(result, task, out, urdf, csv)
         _report(result, out, as_json)
         raise typer.Exit(ExitCode.INTERRUPTED if cancelled() else of_answer(result.satisfied))
 
@@ -121,13 +121,14 @@ def _shown(words: str, part: float) -> None:
         sys.stderr.flush()
 
 
-def _write(result: DesignResult, out: Path | None, urdf: Path | None, csv: Path | None) -> None:
+def _write(result: DesignResult, task: Task | Layout, out: Path | None, urdf: Path | None, csv: Path | None) -> None:
     if result.layout is None or result.verdict is None:
         return
     if out is not None:
         write_layout(result.layout, out)
     if urdf is not None:
-        save_urdf(result.layout, result.verdict, urdf)
+        sizes = task.candidates.stem if isinstance(task, Task) else None
+        save_urdf(result.layout, result.verdict, urdf, sizes)
     if csv is not None:
         save_csv(result.verdict, csv)
 

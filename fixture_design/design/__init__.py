@@ -4,7 +4,7 @@ from fixture_design.design.design import design
 from fixture_design.design.repair import repair
 from fixture_design.design.result import Bound, ChangeBound, DesignResult
 from fixture_design.design.steps import Step
-from fixture_design.design.task import CandidateRules, Grid, Limits, Objective, Task
+from fixture_design.design.task import CandidateRules, Grid, Limits, Objective, PinRules, Task
 from fixture_design.design.ways import Progress, Ways
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Grid",
     "Limits",
     "Objective",
+    "PinRules",
     "Progress",
     "Step",
     "Task",

@@ -26,12 +26,15 @@ def closing_elements(problem: Problem, seed: int) -> tuple[Indices | None, int]:
     if problem.closes == "without friction" and problem.each == 1 and not len(problem.kept):
         chosen = fewest_closing(problem.rows[problem.new], rng, cancelled=problem.cancelled)
         if chosen is not None and len(chosen) == dimension + 1 and problem.limits.spacing == 0:
-            return held_best(rows, (), problem.new[chosen], problem.new)[0], dimension + 1
+            best = held_best(rows, (), problem.new[chosen], problem.new, standing=problem.standing)[0]
+            if problem.together(best):
+                return best, dimension + 1
     pool = problem.clampable
     pool = pool[problem.joins(pool, problem.kept)]
     found = fewest_stopping(
         rows, problem.kept, pool, places=problem.candidates.places, spacing=problem.limits.spacing,
-        most_cuts=_MOST_CUTS, tolerances=problem.candidates.tolerances, cancelled=problem.cancelled,
+        standing=problem.standing, most_cuts=_MOST_CUTS, tolerances=problem.candidates.tolerances,
+        cancelled=problem.cancelled,
     )  # fmt: skip
     if found.chosen is not None or found.complete:
         return found.chosen, found.bound
@@ -47,4 +50,5 @@ def _few(problem: Problem, pool: Indices) -> Indices | None:
         others = [other for other in chosen if other != index]
         if closes(problem.closing_rows, [*problem.kept, *others]):
             chosen = others
-    return np.array(chosen, dtype=np.int64)
+    few = np.array(chosen, dtype=np.int64)
+    return few if problem.together(few) else None

@@ -17,7 +17,7 @@ from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
 from fixture_design.contacts import Contact, Provenance, Scale, face_vectors, tangents, unit_normal
-from fixture_design.layout import Element
+from fixture_design.layout import Element, PointTip, Tip
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: For each candidate its points, normals or rows, as many for each: shape (n, k, ...); unused ones are zero.
@@ -42,6 +42,14 @@ class Spots(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
+class Make:
+    """What a new element would be: its tip, and of a pin the axis, in W."""
+
+    tip: Tip
+    axis: Point | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Candidates:
     """n candidates in W.
 
@@ -52,6 +60,8 @@ class Candidates:
         friction: coefficient of each, used only where rows with friction are asked for.
         elements: the element that a candidate is already; None for those that are none yet.
         scale: reference point and length of the rows.
+        places: where an element is asked to stand, shape (n, p) [m].
+        makes: what an element there would be, for those that are none yet.
     """
 
     points: Several
@@ -61,14 +71,53 @@ class Candidates:
     friction: Weights
     elements: tuple[Element | None, ...]
     scale: Scale
+    places: Points
+    makes: tuple[Make | None, ...]
 
     @classmethod
-    def of(cls, spots: Spots, scale: Scale, friction: float = 0.0) -> Candidates:
-        """One candidate a spot."""
+    def of(cls, spots: Spots, scale: Scale, friction: float = 0.0, make: Make | None = None) -> Candidates:
+        """One candidate a spot, for a tip that touches in a point; a point by default."""
         count = len(spots.points)
         errors = np.array([origin.normal_error for origin in spots.provenance], dtype=np.float64)
         points, normals = np.array(spots.points)[:, None, :], np.array(spots.normals)[:, None, :]
-        return cls(points, normals, spots.features, errors, np.full(count, friction), (None,) * count, scale)
+        nothing = (None,) * count
+        makes = (make or Make(PointTip()),) * count
+        places = np.array(spots.points)
+        return cls(points, normals, spots.features, errors, np.full(count, friction), nothing, scale, places, makes)
+
+    @classmethod
+    def touching(
+        cls, found: Sequence[tuple[Element, Sequence[Contact]]], scale: Scale, friction: float = 0.0
+    ) -> Candidates:
+        """New elements of any kind, with the contacts that they would have; at least one."""
+        points, normals = _packed(found)
+        return cls(
+            points,
+            normals,
+            tuple(contacts[0].feature or "the surface" for _, contacts in found),
+            np.array([max(c.provenance.normal_error for c in one) for _, one in found], dtype=np.float64),
+            np.full(len(found), friction),
+            (None,) * len(found),
+            scale,
+            np.array([element.at for element, _ in found]),
+            tuple(Make(element.tip, element.axis) for element, _ in found),
+        )
+
+    def and_also(self, others: Candidates) -> Candidates:
+        """These, then others, of the same scale."""
+        most = max(self.points.shape[1], others.points.shape[1])
+        mine, theirs = _widened(self, most), _widened(others, most)
+        return Candidates(
+            np.concatenate([mine[0], theirs[0]]),
+            np.concatenate([mine[1], theirs[1]]),
+            (*self.features, *others.features),
+            np.append(self.errors, others.errors),
+            np.append(self.friction, others.friction),
+            (*self.elements, *others.elements),
+            self.scale,
+            np.concatenate([self.places, others.places]),
+            (*self.makes, *others.makes),
+        )
 
     def __len__(self) -> int:
         return len(self.points)
@@ -128,6 +177,8 @@ class Candidates:
             errors=self.errors[numbers],
             friction=self.friction[numbers],
             elements=tuple(self.elements[number] for number in numbers),
+            places=self.places[numbers],
+            makes=tuple(self.makes[number] for number in numbers),
         )
 
     def with_elements(self, found: Sequence[tuple[Element, Sequence[Contact]]]) -> Candidates:
@@ -137,24 +188,15 @@ class Candidates:
         """
         if not found:
             return self
-        several = [[_certain(contact) for contact in contacts] for _, contacts in found]
-        most = max(self.points.shape[1], *(sum(map(len, one)) for one in several))
-        p = self.points.shape[2]
-        points, normals = np.zeros((len(found), most, p)), np.zeros((len(found), most, p))
-        for index, (element, contacts) in enumerate(found):
-            points[index] = element.at
-            given = [(c.point, n) for c, kept in zip(contacts, several[index], strict=True) for n in kept]
-            for place, (point, normal) in enumerate(given):
-                points[index, place], normals[index, place] = point, normal
-        wider = ((0, 0), (0, most - self.points.shape[1]), (0, 0))
-        return replace(
-            self,
-            points=np.concatenate([np.pad(self.points, wider, mode="edge"), points]),
-            normals=np.concatenate([np.pad(self.normals, wider), normals]),
-            features=(*self.features, *(contacts[0].feature or element.name for element, contacts in found)),
-            errors=np.append(self.errors, [max(c.provenance.normal_error for c in one) for _, one in found]),
-            friction=np.append(self.friction, [one[0].friction for _, one in found]),
-            elements=(*self.elements, *(element for element, _ in found)),
+        there = Candidates.touching(found, self.scale)
+        return self.and_also(
+            replace(
+                there,
+                features=tuple(contacts[0].feature or element.name for element, contacts in found),
+                friction=np.array([contacts[0].friction for _, contacts in found]),
+                elements=tuple(element for element, _ in found),
+                makes=(None,) * len(found),
+            )
         )
 
     def with_friction(self, friction: float) -> Candidates:
@@ -175,9 +217,24 @@ class Candidates:
         return int((values > self.tolerances.near * values[0]).sum())
 
     @cached_property
-    def places(self) -> Points:
-        """One point for each, shape (n, p) [m]."""
-        return np.array(self.points[:, 0])
+    def locating(self) -> Several:
+        """Rows by which each one locates, shape (n, k, d): independent ones, the others are zero.
+
+        Of the corners of a pad on a facet three are independent, however many there are.
+        """
+        rows = self.rows.copy()
+        several = np.flatnonzero(rows.any(axis=2).sum(axis=1) > 1)
+        rest, kept = rows[several], np.zeros((len(several), rows.shape[1]), dtype=bool)
+        each = np.arange(len(several))
+        for _ in range(min(rows.shape[1:])):
+            lengths = np.where(kept, 0.0, np.linalg.norm(rest, axis=2))
+            best = np.argmax(lengths, axis=1)
+            far = lengths[each, best] > self.tolerances.near
+            kept[each[far], best[far]] = True
+            directions = rest[each, best] / np.where(far, lengths[each, best], 1.0)[:, None]
+            rest = np.where(far[:, None, None], rest - (rest @ directions[:, :, None]) * directions[:, None], rest)
+        rows[several] = np.where(kept[:, :, None], rows[several], 0.0)
+        return rows
 
     def _faces(self, points: Several, normals: Several) -> Several:
         n, k, p = normals.shape
@@ -190,6 +247,23 @@ def _of_length_one(rows: Several) -> Several:
     """Rows of length one; what says nothing stays zero."""
     lengths = np.linalg.norm(rows, axis=2, keepdims=True)
     return np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0)
+
+
+def _packed(found: Sequence[tuple[Element, Sequence[Contact]]]) -> tuple[Several, Several]:
+    """Points and normals of the contacts of each, shape (n, k, p); alternatives count as none."""
+    several = [[(c.point, n) for c in contacts for n in _certain(c)] for _, contacts in found]
+    most, p = max(1, *map(len, several)), len(found[0][0].at)
+    points, normals = np.zeros((len(found), most, p)), np.zeros((len(found), most, p))
+    for index, ((element, _), given) in enumerate(zip(found, several, strict=True)):
+        points[index] = element.at
+        for place, (point, normal) in enumerate(given):
+            points[index, place], normals[index, place] = point, normal
+    return points, normals
+
+
+def _widened(candidates: Candidates, most: int) -> tuple[Several, Several]:
+    wider = ((0, 0), (0, most - candidates.points.shape[1]), (0, 0))
+    return np.pad(candidates.points, wider, mode="edge"), np.pad(candidates.normals, wider)
 
 
 def _certain(contact: Contact) -> list[Point]:

@@ -11,6 +11,7 @@ from fixture_design.cones.kernel import closure_tests
 from fixture_design.design.candidates import Several, flat
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import apart
+from fixture_design.design.standing import Standing
 
 #: Rounds of moving every element once, at most.
 _MOST_ROUNDS = 20
@@ -36,11 +37,13 @@ def held_best(
     pool: Indices,
     places: Points | None = None,
     spacing: float = 0.0,
+    standing: Standing | None = None,
 ) -> tuple[Indices, float]:
     """Places for some elements of a closed set with the largest margin, moved one after the other; and the margin.
 
     Args:
         others: indices of those that stay.  moving: indices of those that may move, to any of ``pool``.
+        places, spacing: they keep this far from each other [m].  standing: and out of each other's way.
     """
     moving = np.array(moving, dtype=np.int64)
     others = np.asarray(others, dtype=np.int64)
@@ -52,6 +55,8 @@ def held_best(
             free = pool[~np.isin(pool, rest)]
             if places is not None:
                 free = free[apart(places, rest, free, spacing)]
+            if standing is not None:
+                free = free[standing.free(rest, free)]
             if not len(free):
                 continue
             sets = np.column_stack([np.broadcast_to(rest, (len(free), len(rest))), free])

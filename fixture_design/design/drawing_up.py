@@ -43,9 +43,7 @@ def layout_of(
 ) -> Layout:
     """The layout with the elements chosen, locators first; bodies and contacts of the start as they were."""
     roles: tuple[tuple[Role, Indices], ...] = (("locator", locators), ("clamp", clamps))
-    elements = [
-        _element(task, candidates, index, role, names[index]) for role, chosen in roles for index in chosen.tolist()
-    ]
+    elements = [_element(candidates, index, role, names[index]) for role, chosen in roles for index in chosen.tolist()]
     start = task.start
     given = {named.name for named in (*start.bodies, *start.contacts)} if start else set()
     return replace(
@@ -72,8 +70,10 @@ def empty_layout(task: Task, require: Mapping[str, tuple[Requirement, ...]], fri
     )
 
 
-def _element(task: Task, candidates: Candidates, index: int, role: Role, name: str) -> Element:
+def _element(candidates: Candidates, index: int, role: Role, name: str) -> Element:
     known = candidates.elements[index]
     if known is not None:
         return known
-    return Element(name, role, read_only(candidates.places[index]), task.candidates.tip)
+    make = candidates.makes[index]
+    assert make is not None  # what is no element yet is made
+    return Element(name, role, read_only(candidates.places[index]), make.tip, make.axis)

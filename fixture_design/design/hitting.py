@@ -20,6 +20,7 @@ from fixture_design.arrays import Indices, Mask, Points, Rows, Vector, Weights
 from fixture_design.cones.kernel import closure_test, tucker_partition
 from fixture_design.design.candidates import Several, flat, stops
 from fixture_design.design.cover import cheapest_cover, greedy_cover
+from fixture_design.design.standing import Standing
 from fixture_design.tolerances import DEFAULT, Tolerances
 
 #: Cuts after which the search says what it knows so far.
@@ -56,6 +57,7 @@ def fewest_stopping(
     costs: Weights | None = None,
     places: Points | None = None,
     spacing: float = 0.0,
+    standing: Standing | None = None,
     most_cuts: int = MOST_CUTS,
     known: Sequence[Vector] = (),
     enough: float = np.inf,
@@ -68,6 +70,7 @@ def fewest_stopping(
         rows: of all candidates, shape (n, k, d).  base, pool: indices.
         costs: shape (len(pool),), around 1; by default all 1, and the fewest are sought.
         places, spacing: two of the pool closer than this are not chosen together.
+        standing: nor are two that are in each other's way.
         known: motions to begin with, that ``base`` leaves free.
         enough: the search ends where the bound reaches this, with or without a choice.
     """
@@ -93,11 +96,13 @@ def fewest_stopping(
         if exact or apart:
             bound = max(bound, _at_least(float(costs[cover].sum()), costs))
         near = _too_near(cover, None if places is None else places[pool], spacing)
-        if near is not None:
+        if near is None and standing is not None and (pair := standing.first_conflict(pool[cover])) is not None:
+            near = int(cover[pair[0]]), int(cover[pair[1]])
+        if near is not None and len(cuts) + len(apart) < most_cuts and not cancelled():
             apart.append(near)
             continue
         motion = free_motion(flat(rows, np.concatenate([base, pool[cover]])), tolerances)
-        if motion is None and (exact or apart):
+        if motion is None and (exact or apart) and near is None:
             return found(pool[cover], bound)
         if bound >= enough or len(cuts) + len(apart) >= most_cuts or cancelled():
             last = cheapest_cover(cuts, costs)
@@ -157,9 +162,11 @@ def strongest(
         tried[candidate] = True
         other = free_motion(np.vstack([inside, rows[pool[candidate]]]), tolerances)
         failures += 1
-        if other is not None:
-            motion, failures = other, 0
-            cut &= stops(rows[pool], motion, tolerances.near)
-            cut[candidate] = False
+        if other is None:
+            continue
+        fewer = cut & stops(rows[pool], other, tolerances.near)
+        fewer[candidate] = False
+        if fewer.any():  # else it is free only up to rounding: all together do stop it
+            motion, cut, failures = other, fewer, 0
             inside = flat(rows, np.concatenate([base, pool[~cut]]))
     return motion, cut

@@ -8,13 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Mask, Points, Rows, Vector
+from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector
 from fixture_design.design.candidates import Candidates, Several
 from fixture_design.design.duties import Duties
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import Features, apart
 from fixture_design.design.pushing import Program
+from fixture_design.design.standing import Standing
 from fixture_design.design.task import Limits, Objective
+from fixture_design.tolerances import DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +32,8 @@ class Problem:
         opens: whether some motion must leave all locators at once, be it a screw.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
+        standing: which of them would run into each other; None where nobody knows.
+        barred: directions out, each with the candidates that the part would run into along it, shape (n,).
         duties: what is to be balanced by preloads; None where nobody asks.
         cancelled: asked now and then.
     """
@@ -45,6 +49,8 @@ class Problem:
     opens: bool = False
     closes: str | None = "without friction"
     features: Features | None = None
+    standing: Standing | None = None
+    barred: tuple[tuple[Point, Mask], ...] = ()
     duties: Duties | None = None
     cancelled: Callable[[], bool] = lambda: False
 
@@ -113,14 +119,47 @@ class Problem:
         return self.candidates.pushes(rough=bool(self.candidates.friction.any()), outer=outer)
 
     def rows_of(self, candidates: Indices | tuple[int, ...]) -> Indices:
-        """Numbers of the rows of candidates that say something."""
+        """Numbers of the rows by which candidates locate, independent ones of each."""
         numbers = (np.asarray(candidates, dtype=np.int64)[:, None] * self.each + np.arange(self.each)).ravel()
-        return numbers[self.rows[numbers].any(axis=1)]
+        return numbers[self._locating[numbers]]
+
+    @cached_property
+    def noticed(self) -> Rows:
+        """Orthonormal rows that span all that candidates can notice."""
+        return np.linalg.svd(self.rows, full_matrices=False)[2][: self.candidates.freedoms]
+
+    @cached_property
+    def _locating(self) -> Mask:
+        """Which of `rows` locate: of those of one candidate independent ones."""
+        return np.any(self.candidates.locating.reshape(len(self.rows), -1), axis=1)
+
+    @cached_property
+    def several(self) -> bool:
+        """Whether some new element would locate in more than one row, as a pad does."""
+        return bool((np.any(self.candidates.locating[self.new], axis=2).sum(axis=1) > 1).any())
 
     def owners(self, rows: Indices) -> Indices:
         """The candidates of rows, each once."""
         return np.unique(rows // self.each)
 
+    @property
+    def crowded(self) -> bool:
+        """Whether it matters which candidates are chosen together."""
+        return self.limits.spacing > 0 or self.standing is not None
+
     def joins(self, pool: Indices, chosen: Indices | tuple[int, ...] | list[int]) -> Mask:
-        """Which of a pool of candidates are far enough from all chosen ones."""
-        return apart(self.candidates.places, np.asarray(chosen, dtype=np.int64), pool, self.limits.spacing)
+        """Which of a pool of candidates are far enough from all chosen ones, and not in their way."""
+        chosen = np.asarray(chosen, dtype=np.int64)
+        free = apart(self.candidates.places, chosen, pool, self.limits.spacing)
+        return free if self.standing is None else free & self.standing.free(chosen, pool)
+
+    def together(self, chosen: Indices) -> bool:
+        """Whether candidates may all be chosen together."""
+        return all(self.joins(chosen[place + 1 :], chosen[[place]]).all() for place in range(len(chosen)))
+
+    def passing(self, pool: Indices, out: Point | None) -> Indices:
+        """Those of a pool that are not known to be in the part's way out."""
+        for direction, hit in self.barred if out is not None else ():
+            if float(direction @ out) > 1 - DEFAULT.near:
+                pool = pool[~hit[pool]]
+        return pool

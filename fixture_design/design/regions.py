@@ -13,6 +13,7 @@ from fixture_design.arrays import Indices, Mask, Point
 from fixture_design.design.hitting import Hitting, fewest_stopping
 from fixture_design.design.problem import Problem
 from fixture_design.design.straight import cells, different
+from fixture_design.tolerances import COPLANAR_ANGLE
 
 #: Regions that are bounded at most.
 MOST_BOUNDED = 64
@@ -72,6 +73,18 @@ def ways_out(problem: Problem, seed: int) -> tuple[list[tuple[Point | None, Mask
         leaves[said] = cell.leaves[which]
         ways.append((cell.direction, np.all(leaves.reshape(len(several), -1), axis=1)))
     return ways, complete and len(found) <= MOST_BOUNDED
+
+
+def bounded_region(problem: Problem, out: Point) -> Region | None:
+    """New candidates that a direction leaves, and how few clamps could close with them; None if they are too few."""
+    products = problem.candidates.normals @ out
+    said = np.any(problem.candidates.normals, axis=2)
+    leaves: Mask = np.all(~said | (products < -COPLANAR_ANGLE), axis=1)
+    pool = problem.new[leaves[problem.new]]
+    if not _enough(problem, pool):
+        return None
+    clamps = None if problem.closes is None else _bounded(problem, pool, np.inf)
+    return None if clamps is not None and clamps.chosen is None and clamps.complete else Region(out, pool, clamps)
 
 
 def _enough(problem: Problem, pool: Indices) -> bool:

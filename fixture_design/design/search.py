@@ -19,6 +19,7 @@ from fixture_design.design.closing import fewest_closing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, inaccuracy, independent, volume
+from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
 from fixture_design.design.pressing import least_bound, least_of_all, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
@@ -45,9 +46,25 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
     least = min((region.bound for region in regions), default=None)
     if best is None:
         return Outcome(best, least, complete)
+    return _with_bounds(problem, best, regions, least, complete)
+
+
+def search_region(problem: Problem, region: Region, seed: int, restarts: int = RESTARTS) -> Outcome:
+    """The best layout of one region, with its bounds."""
+    best = _better_within(problem, region, np.random.default_rng(seed), None, restarts)
+    return (
+        Outcome(None, region.bound, True) if best is None else _with_bounds(problem, best, [region], region.bound, True)
+    )
+
+
+def _with_bounds(
+    problem: Problem, best: Found, regions: Sequence[Region], least: int | None, complete: bool
+) -> Outcome:
+    """With bounds over all regions that might do with as few clamps; none of accuracy where rows are redundant."""
     left = [region for region in regions if region.bound <= len(best.clamps)]
     preload, here = _best_preload(problem, left), _best_preload_here(problem, best)
-    return Outcome(best, least, complete, _best_accuracy(problem, left), preload, here)
+    redundant = problem.several and redundancy(problem, best.locators) > 0
+    return Outcome(best, least, complete, None if redundant else _best_accuracy(problem, left), preload, here)
 
 
 def _whatever_closes(problem: Problem, seed: int) -> Outcome:
@@ -65,9 +82,11 @@ def _whatever_closes(problem: Problem, seed: int) -> Outcome:
     return Outcome(found, 0, True, least_elements=least)
 
 
-def _better_within(problem: Problem, region: Region, rng: np.random.Generator, best: Found | None) -> Found | None:
+def _better_within(
+    problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, restarts: int = RESTARTS
+) -> Found | None:
     """The best of one region, or ``best`` if that is better."""
-    for restart in range(RESTARTS):
+    for restart in range(restarts):
         if problem.cancelled():
             break
         first = _reacting(problem, region, rng) if restart == 0 else None
@@ -119,18 +138,21 @@ def _preload_before_accuracy(problem: Problem) -> bool:
 
 def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
     """Locators of a region after exchanges, the kept ones among them; None where there are not enough."""
+    if problem.several:
+        return located_elements(problem, problem.passing(region.pool, region.out), rng)
     kept = problem.rows_of(problem.locators)
     kept = independent(problem.rows, kept, (), rng, problem.candidates.freedoms) if len(kept) else kept
-    pool = region.pool * problem.each
+    usable = problem.passing(region.pool, region.out)
+    pool = usable * problem.each
 
     def joins(chosen: object) -> np.ndarray:
         owners = np.concatenate([problem.kept, np.asarray(chosen, dtype=np.int64) // problem.each])
-        return problem.joins(region.pool, owners)
+        return problem.joins(usable, owners)
 
     def allowed(chosen: Indices) -> np.ndarray:
         return np.array([joins(np.delete(chosen, place)) for place in range(len(chosen))])
 
-    spaced = problem.limits.spacing > 0
+    spaced = problem.crowded
     rows = independent(problem.rows, pool, kept, rng, problem.candidates.freedoms, joins if spaced else None)
     if len(rows) < problem.candidates.freedoms:
         return None
@@ -148,7 +170,8 @@ def clamps_for(problem: Problem, locators: Indices) -> Indices | None:
     costs = np.where(np.isin(pool, problem.spare), _KEPT_COST, 1.0)
     found = fewest_stopping(
         problem.closing_rows, base, pool, costs=costs, places=problem.candidates.places,
-        spacing=problem.limits.spacing, tolerances=problem.candidates.tolerances, cancelled=problem.cancelled,
+        spacing=problem.limits.spacing, standing=problem.standing, tolerances=problem.candidates.tolerances,
+        cancelled=problem.cancelled,
     )  # fmt: skip
     if found.chosen is None:
         return None
@@ -162,13 +185,16 @@ def _turned_round(problem: Problem, region: Region, rng: np.random.Generator) ->
     if region.out is None:
         chosen = fewest_closing(problem.rows, rng, tries=3, cancelled=problem.cancelled)
         if chosen is not None and len(chosen) == problem.candidates.freedoms + 1:
-            chosen, _ = held_best(problem.closing_rows, (), chosen, problem.new)
+            chosen, _ = held_best(problem.closing_rows, (), chosen, problem.new, standing=problem.standing)
+            if not problem.together(chosen):
+                return
             clamp = int(rng.integers(len(chosen)))
             yield _moved(problem, region, np.delete(chosen, clamp), chosen[[clamp]]), chosen[[clamp]]
         return
     clamps = region.clamps.chosen if region.clamps is not None else None
-    locators = None if clamps is None else locators_for(problem.rows, region.pool, clamps, rng)
-    if locators is not None and clamps is not None:
+    usable = problem.passing(region.pool, region.out)
+    locators = None if clamps is None or not len(usable) else locators_for(problem.rows, usable, clamps, rng)
+    if locators is not None and clamps is not None and problem.together(np.concatenate([locators, clamps])):
         yield _moved(problem, region, locators, clamps), clamps
 
 
@@ -179,15 +205,17 @@ def _moved(problem: Problem, region: Region, locators: Indices, clamps: Indices)
         float(margins(problem.closing_rows, start[None])[0]), max(GOOD_MARGIN, 2 * problem.candidates.tolerances.near)
     )
 
+    usable = problem.passing(region.pool, region.out)
+
     def allowed(chosen: Indices) -> np.ndarray:
         fit = []
         for place in range(len(chosen)):
             rest = np.concatenate([np.delete(chosen, place), clamps])
-            sets = np.column_stack([np.broadcast_to(rest, (len(region.pool), len(rest))), region.pool])
-            fit.append(margins(problem.closing_rows, sets) > least)
+            sets = np.column_stack([np.broadcast_to(rest, (len(usable), len(rest))), usable])
+            fit.append((margins(problem.closing_rows, sets) > least) & problem.joins(usable, rest))
         return np.array(fit)
 
-    return exchanged(problem.rows, region.pool, locators, (), problem.features, allowed)
+    return exchanged(problem.rows, usable, locators, (), problem.features, allowed)
 
 
 def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Found:
@@ -196,13 +224,15 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
     new = clamps[~np.isin(clamps, [*problem.clamps, *problem.spare])]
     if problem.closes is not None and closes(problem.closing_rows, np.concatenate([locators, clamps])):
         staying = np.concatenate([locators, clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]])
-        moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing)
+        moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing, problem.standing)
         clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
     preload, holds = 0.0, True
     if problem.pushing is not None:
         pressed = pressed_clamps(problem, problem.pushing, locators, clamps)
         if _preload_before_accuracy(problem):
-            locators, pressed = pressed_together(problem, problem.pushing, region.pool, locators, pressed)
+            locators, pressed = pressed_together(
+                problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
+            )
         clamps, margin, preload, holds = pressed.clamps, pressed.margin, pressed.total, pressed.holds
     return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin, preload, holds)
 
@@ -244,6 +274,8 @@ def _best_preload(problem: Problem, regions: Sequence[Region]) -> float | None:
 
 def accuracy(problem: Problem, locators: Indices) -> float:
     """Of locators; small is good."""
+    if problem.several:
+        return inexactness_of(problem, locators)
     numbers = problem.rows_of(locators)
     if problem.features is not None and len(numbers) == problem.candidates.dimension:
         return inaccuracy(problem.rows, problem.features, numbers)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fixture_design.design.found import Found, Outcome
+from fixture_design.design.locating_several import fewest_locators
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.start import Start
@@ -19,7 +20,8 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
     found = None if outcome.found is None else outcome.found.count
     if outcome.least_elements is not None:
         return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
-    locators, clamps = problem.candidates.freedoms, outcome.least_clamps
+    locators = fewest_locators(problem)
+    clamps = outcome.least_clamps
     single = problem.each == 1 and problem.closes == "without friction"
     elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
     return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates))
@@ -58,4 +60,6 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
             reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
             return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
     reason = f"no layout was found; at least {bound.locators} locators and {bound.clamps} clamps are needed"
+    if problem.standing is not None:
+        reason += ", with stems and bodies out of each other's way"
     return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from fixture_design.arrays import Point, Points, Vector
-from fixture_design.layout import KeyFeature, Layout, Load, Part, PointTip, Requirement, Space, Tip
+from fixture_design.layout import KeyFeature, Layout, Load, Part, PointTip, Requirement, Space, StemSizes, Tip
 from fixture_design.tolerances import SURFACE_GAP
 
 #: What is made small or large, in this order; `fewest` elements, the smallest error at the key features, the largest
@@ -25,6 +25,14 @@ class Grid:
     plane: Literal["xy", "yz", "xz"] = "xy"
 
 
+@dataclass(frozen=True)
+class PinRules:
+    """Pins that may stand in the part's holes, as thick as these less ``clearance``; ``diameters`` from and to [m]."""
+
+    clearance: float
+    diameters: tuple[float, float]
+
+
 @dataclass(frozen=True, eq=False)
 class CandidateRules:
     """Where elements may touch the part.
@@ -35,7 +43,9 @@ class CandidateRules:
         facets: allowed ones by number; None allows all.
         keep_out: boxes (lowest corner, highest corner) in W without candidates [m].
         points: candidates as someone chose them, in W, instead of a spread.  grid: of a modular plate, likewise.
-        tip: of every new element.
+        tip: of new elements.  more_tips: that they may have instead.
+        pins: a round and a diamond pin in two holes are tried first; None for none.
+        stem: sizes of what carries a tip, where these are not the usual ones.
     """
 
     spacing: float | None = None
@@ -45,6 +55,9 @@ class CandidateRules:
     points: Points | None = None
     grid: Grid | None = None
     tip: Tip = field(default_factory=PointTip)
+    more_tips: tuple[Tip, ...] = ()
+    pins: PinRules | None = None
+    stem: StemSizes = field(default_factory=StemSizes)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fixture_design.arrays import Point
 from fixture_design.contacts import Contact
-from fixture_design.errors import InputError, format_length, looking_at
+from fixture_design.errors import GeometryError, InputError, UnsupportedError, format_length, looking_at
 from fixture_design.geometry.bodies import contacts_of_bodies
 from fixture_design.geometry.contact import contacts_on
 from fixture_design.geometry.load import load_part
@@ -74,6 +74,23 @@ def contacts_of_elements(layout: Layout, geometry: PartGeometry | Polygon | None
     return GeometryContacts(
         (*contacts, *of_bodies), (*geometry.notes, *notes), center, geometry.half_diagonal, geometry
     )
+
+
+def contacts_one_by_one(
+    elements: Sequence[Element], part: Part, geometry: PartGeometry | Polygon, surface_gap: float
+) -> list[tuple[Contact, ...]]:
+    """The contacts of elements that are tried, without friction: of each alone, none where it cannot stand.
+
+    Why it cannot is not told: there are thousands to choose from.
+    """
+    surface = geometry if isinstance(geometry, Polygon) else _surface_near(elements, geometry, part.pose)
+    found: list[tuple[Contact, ...]] = []
+    for element in elements:
+        try:
+            found.append(contacts_on(element, surface, part.pose, 0.0, surface_gap, part.name))
+        except (GeometryError, UnsupportedError):
+            found.append(())
+    return found
 
 
 def _surface_near(elements: Sequence[Element], geometry: PartGeometry, X_WP: Pose) -> SolidSurface:

@@ -128,6 +128,12 @@ def _in_hole(
     )
 
 
+def has_wall_all_around(geometry: PartGeometry, hole: SmoothSurface, p_PA: Point) -> bool:
+    """Whether a hollow cylinder is closed at the height of a point on its axis."""
+    arcs = _arcs(geometry, hole, p_PA, *tangents(hole.axis))
+    return sum(end - start for start, end in arcs) > 2 * np.pi - _SEAM
+
+
 def _within(angle: float, arc: tuple[float, float]) -> bool:
     return (angle - arc[0] + _SEAM) % (2 * np.pi) <= arc[1] - arc[0] + 2 * _SEAM
 

@@ -88,7 +88,7 @@ def _element_problems(element: ElementRecord, path: KeyPath, planar: bool) -> It
     if element.limits is not None:
         yield from order_problems(element.limits, (*path, "limits"))
     if element.tip is not None:
-        yield from _tip_problems(element.tip, (*path, "tip"), owner)
+        yield from tip_problems(element.tip, (*path, "tip"), owner)
     has_pin = element.tip is not None and element.tip.pin is not None
     if has_pin and element.axis is None and not planar:
         yield Problem(path, f"{owner} is a pin without an axis", expected="axis: [x, y, z]")
@@ -104,7 +104,8 @@ def order_problems(limits: tuple[float, ...], path: KeyPath) -> Iterator[Problem
         yield Problem(path, f"{path[-1]!r} is out of order", f"[{low:g}, {high:g}]", "the smaller one first")
 
 
-def _tip_problems(tip: TipRecord, path: KeyPath, owner: str) -> Iterator[Problem]:
+def tip_problems(tip: TipRecord, path: KeyPath, owner: str) -> Iterator[Problem]:
+    """What a tip's keys must satisfy together; ``owner`` is whose it is, in words."""
     yield from _exactly_one(tip, TIPS, path, f"the tip of {owner}", "shape")
     given = given_keys(tip, TIPS)
     diamond = tip.pin is not None and tip.pin.shape == "diamond"

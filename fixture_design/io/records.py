@@ -98,7 +98,8 @@ class TipRecord(Record):
     along: Coordinates | None = Field(None, description="direction of a pad's width, a line, a diamond pin")
 
 
-def _or_point(schema: dict[str, Any]) -> None:
+def or_point(schema: dict[str, Any]) -> None:
+    """Lets a JSON Schema say that a tip may be the word `point`."""
     schema["anyOf"].insert(0, {"const": "point"})
 
 
@@ -116,7 +117,7 @@ class ElementRecord(Record):
     name: Name
     role: Role
     at: Coordinates = Field(description="in W [length]")
-    tip: TipField = Field(None, description="default: point", json_schema_extra=_or_point)
+    tip: TipField = Field(None, description="default: point", json_schema_extra=or_point)
     axis: Coordinates | None = Field(None, description="of a pin: its direction")
     tolerance: Deviation | None = Field(None, description="of its position along the normal [length]")
     friction: Friction | None = Field(None, description="coefficient, default: the layout's")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from fixture_design.arrays import read_only
-from fixture_design.design import CandidateRules, Grid, Limits, Task
+from fixture_design.design import CandidateRules, Grid, Limits, PinRules, Task
 from fixture_design.errors import FileFormatError
 from fixture_design.io.documents import Document, read_document
 from fixture_design.io.layout_file import read_layout
@@ -18,9 +19,9 @@ from fixture_design.io.plain_words import validated
 from fixture_design.io.problems import content_error
 from fixture_design.io.records import LAYOUT_SCHEMA
 from fixture_design.io.schema_key import require_schema
-from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, TaskRecord
+from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, PinsRecord, StemRecord, TaskRecord
 from fixture_design.io.task_rules import as_layout, task_problems
-from fixture_design.layout import Layout, Part, Pose
+from fixture_design.layout import Layout, Part, Pose, StemSizes
 
 #: Endings of files that are tasks; all others are parts.
 TASK_ENDINGS = (".yaml", ".yml", ".json")
@@ -101,6 +102,7 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
     def point(values: tuple[float, ...]) -> np.ndarray:
         return read_only([metres(value) for value in values])
 
+    tips = tuple(tip_from_record(tip, metres) for tip in rules.tips or (rules.tip,))
     return CandidateRules(
         spacing=None if rules.spacing is None else metres(rules.spacing),
         edge_margin=None if rules.edge_margin is None else metres(rules.edge_margin),
@@ -108,8 +110,21 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
         keep_out=tuple((point(region.box[0]), point(region.box[1])) for region in rules.keep_out),
         points=None if rules.points is None else read_only([point(values) for values in rules.points]),
         grid=None if rules.grid is None else Grid(point(rules.grid.origin), metres(rules.grid.pitch), rules.grid.plane),
-        tip=tip_from_record(rules.tip, metres),
+        tip=tips[0],
+        more_tips=tips[1:],
+        pins=None if rules.pins is None else _pins(rules.pins, metres),
+        stem=_stem(rules.stem, metres),
     )
+
+
+def _pins(pins: PinsRecord, metres: Callable[[float], float]) -> PinRules:
+    low, high = pins.diameters
+    return PinRules(metres(pins.clearance), (metres(low), metres(high)))
+
+
+def _stem(stem: StemRecord | None, metres: Callable[[float], float]) -> StemSizes:
+    given = {} if stem is None else stem.model_dump(exclude_none=True)
+    return StemSizes(**{key: metres(value) for key, value in given.items()})
 
 
 def _limits(limits: LimitsRecord, task: TaskRecord) -> Limits:

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from fixture_design.design import Objective
 from fixture_design.io.record_types import Coordinates, Friction, NotNegative, Positive, PushLimits, Record, Text
-from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField
+from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField, or_point
 from fixture_design.layout import Space
 
 TASK_SCHEMA = "fixture_design/task/1"
@@ -33,6 +33,26 @@ class GridRecord(Record):
     plane: Literal["xy", "yz", "xz"] = Field("xy", description="of the plate")
 
 
+class StemRecord(Record):
+    """What carries the tip of a new element; what is not given fits a part of this size."""
+
+    WANTED: ClassVar[str] = "a mapping such as {radius: 0.004, length: 0.03, body_radius: 0.01, body_length: 0.02}"
+    radius: Positive | None = Field(None, description="of the stem [length]")
+    length: Positive | None = Field(None, description="of the stem, from the tip [length]")
+    body_radius: Positive | None = Field(None, description="of the body behind the stem [length]")
+    body_length: Positive | None = Field(None, description="of the body [length]")
+
+
+class PinsRecord(Record):
+    """Pins in holes and slots of the part: a round one and a diamond one, with three points on faces."""
+
+    WANTED: ClassVar[str] = "a mapping such as {clearance: 2.0e-5, diameters: [0.004, 0.02]}"
+    clearance: NotNegative = Field(description="between hole and pin, in diameter [length]")
+    diameters: Annotated[tuple[Positive, ...], Field(strict=False, min_length=2, max_length=2)] = Field(
+        description="of pins, from and to [length]"
+    )
+
+
 class CandidatesRecord(Record):
     """Where elements may touch the part; at most one of spacing, points and grid."""
 
@@ -47,7 +67,13 @@ class CandidatesRecord(Record):
         None, description="candidates, in W [length]"
     )
     grid: GridRecord | None = None
-    tip: TipField = Field(None, description="of new elements, default: point")
+    tip: TipField = Field(None, description="of new elements, default: point", json_schema_extra=or_point)
+    tips: (
+        Annotated[tuple[Annotated[TipField, Field(json_schema_extra=or_point)], ...], Field(strict=False, min_length=1)]
+        | None
+    ) = Field(None, description="in place of `tip`: several, of which each new element has one")
+    stem: StemRecord | None = None
+    pins: PinsRecord | None = None
 
 
 class LimitsRecord(Record):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from fixture_design.io.layout_rules import given_keys, layout_problems, order_problems
+from fixture_design.io.layout_rules import given_keys, layout_problems, order_problems, tip_problems
 from fixture_design.io.places import KeyPath
 from fixture_design.io.problems import Problem
-from fixture_design.io.records import LAYOUT_SCHEMA, LayoutRecord
+from fixture_design.io.records import LAYOUT_SCHEMA, LayoutRecord, TipRecord
 from fixture_design.io.task_records import CandidatesRecord, LimitsRecord, TaskRecord
 
-#: Tips that new elements may have: those that touch in one point wherever the surface is smooth.
-_TIPS = ("sphere", "soft")
+#: Tips that new elements may have.
+_TIPS = ("sphere", "soft", "pad", "line")
 
 #: Keys that a task has as a layout has them.
 _SHARED = ("name", "space", "units", "part", "gravity", "friction", "surface_gap", "key_features", "loads", "require")
@@ -53,9 +53,33 @@ def _candidate_problems(candidates: CandidatesRecord, planar: bool) -> Iterator[
             yield Problem(path, "the box's first corner is not its lowest", f"{low} and {high}", "[lowest, highest]")
     for index, point in enumerate(candidates.points or ()):
         yield from _count_problems(point, ("candidates", "points", index), planar)
-    if candidates.tip is not None and not given_keys(candidates.tip, _TIPS):
-        expected = "point, {sphere: radius} or {soft: radius}"
-        yield Problem(("candidates", "tip"), "design places no tips of this kind", expected=expected)
+    if candidates.pins is not None and planar:
+        yield Problem(("candidates", "pins"), "pins in holes are for spatial parts", expected="no `pins` here")
+    elif candidates.pins is not None and candidates.pins.diameters[0] > candidates.pins.diameters[1]:
+        path = ("candidates", "pins", "diameters")
+        found = f"[{candidates.pins.diameters[0]:g}, {candidates.pins.diameters[1]:g}]"
+        yield Problem(path, "'diameters' is out of order", found, "the smaller one first")
+    if candidates.stem is not None and planar:
+        yield Problem(("candidates", "stem"), "stems are spatial: elements stand upright beside a planar part")
+    if candidates.tip is not None and candidates.tips is not None:
+        yield Problem(("candidates", "tips"), "candidates have 'tip' and 'tips' together", expected="one of them")
+    if candidates.tip is not None:
+        yield from _new_tip_problems(candidates.tip, ("candidates", "tip"), planar)
+    for index, tip in enumerate(candidates.tips or ()):
+        if tip is not None:
+            yield from _new_tip_problems(tip, ("candidates", "tips", index), planar)
+
+
+def _new_tip_problems(tip: TipRecord, path: KeyPath, planar: bool) -> Iterator[Problem]:
+    if not given_keys(tip, _TIPS):
+        expected = "point, {sphere: radius}, {soft: radius}, {pad: [w, h], along: v} or {line: length, along: v}"
+        yield Problem(path, "design places no tips of this kind", expected=expected)
+        return
+    yield from tip_problems(tip, path, "new elements")
+    if tip.along is not None:
+        yield from _count_problems(tip.along, (*path, "along"), planar)
+        if not any(tip.along):
+            yield Problem((*path, "along"), "'along' has zero length", expected="a direction")
 
 
 def _limit_problems(limits: LimitsRecord, planar: bool) -> Iterator[Problem]:

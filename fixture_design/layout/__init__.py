@@ -22,6 +22,7 @@ from fixture_design.layout.layout import (
     named_files,
 )
 from fixture_design.layout.pose import Pose
+from fixture_design.layout.stem import PIN_REACH, Column, Stem, StemSizes, pin_stem, stem_of
 from fixture_design.layout.use import (
     Balance,
     ContactForce,
@@ -54,10 +55,12 @@ from fixture_design.layout.verdict import (
 )
 
 __all__ = [
+    "PIN_REACH",
     "USE_CLAIMS",
     "Answer",
     "Balance",
     "Body",
+    "Column",
     "ContactForce",
     "Counted",
     "Element",
@@ -92,6 +95,8 @@ __all__ = [
     "Space",
     "SphereTip",
     "Stage",
+    "Stem",
+    "StemSizes",
     "StraightWays",
     "Tip",
     "Unbalanced",
@@ -101,5 +106,7 @@ __all__ = [
     "element_name",
     "groups_of",
     "named_files",
+    "pin_stem",
     "severity",
+    "stem_of",
 ]

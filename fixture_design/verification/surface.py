@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points, Vector
+from fixture_design.arrays import Mask, Point, Points, Vector
 from fixture_design.contacts import Contact, Scale
 from fixture_design.errors import GeometryError, UnsupportedError, looking_at
-from fixture_design.layout import Layout, Part, Verdict, groups_of
+from fixture_design.layout import Element, Layout, Part, Stem, Verdict, groups_of
 from fixture_design.verification.load_paths import load_rows
 from fixture_design.verification.use import USE_QUESTIONS
 from fixture_design.verification.verify import QUESTIONS, contacts_of, verify
 from fixture_design.verification.weight import weight_of
 
 if TYPE_CHECKING:
-    from fixture_design.geometry import PartGeometry, Polygon, SurfacePoints
+    from fixture_design.geometry import Hole, PartGeometry, Polygon, SurfacePoints
 
 #: Candidates that a part gets where no spacing is asked for, about [-], and of a planar one.
 _SPATIAL, _PLANAR = 400, 80
@@ -96,10 +96,42 @@ class PartSurface:
         return weight.wrench, [row.wrench for row in load_rows(layout, everything)]
 
     def contacts(self, layout: Layout) -> Sequence[Contact]:
-        return contacts_of(layout).contacts
+        return contacts_of(layout, self.geometry).contacts
 
     def verify(self, layout: Layout) -> Verdict:
-        return verify(layout)
+        return verify(layout, found=contacts_of(layout, self.geometry))
+
+    def touching(self, elements: Sequence[Element]) -> Sequence[Sequence[Contact]]:
+        """The contacts that each element has by itself, without friction; none where it cannot stand."""
+        from fixture_design.geometry import contacts_one_by_one  # noqa: PLC0415 - as above
+
+        return contacts_one_by_one(elements, self.part, self.geometry, self.surface_gap)
+
+    def holes(self) -> tuple[Hole, ...]:
+        """The holes and slots that pins could be in; a planar part has none."""
+        from fixture_design.geometry import Polygon, holes_of  # noqa: PLC0415 - as above
+
+        return () if isinstance(self.geometry, Polygon) else holes_of(self.geometry, self.part.pose)
+
+    def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
+        """Which elements cut the part neither with stem nor body; with ``out`` also while it leaves along that.
+
+        In the plane all fit: elements stand upright beside a planar part.
+
+        Args:
+            points, normals: of their contacts in W, shape (n, p); normals outward, of length 1.
+            out: of length 1, in W.
+        """
+        from fixture_design.geometry import Places, Polygon, with_room, with_way  # noqa: PLC0415 - as above
+
+        if isinstance(self.geometry, Polygon):
+            return np.ones(len(points), dtype=bool)
+        X_PW = self.part.pose.inverse()
+        places = Places(X_PW.points(points), X_PW.vectors(normals))
+        free = with_room(self.geometry, places, stem)
+        if out is not None:
+            free[free] = with_way(self.geometry, places.some(np.flatnonzero(free)), stem, X_PW.vectors(out[None])[0])
+        return free
 
     def spots(self, rules: CandidateWishes, seed: int) -> SurfacePoints:
         """Candidates where the rules let them be.

@@ -12,9 +12,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import shapely
 import trimesh
 
 from fixture_design.io import read_layout
+from fixture_design.layout import PinTip
 from tests.cli.conftest import Ran
 
 Command = Callable[..., Ran]
@@ -78,6 +80,71 @@ def test_urdf_elements_touch_the_part_and_stand_outside(command: Command, box: P
         assert outward[face] * element.at[face] == pytest.approx(half[face])
 
 
+PINNED = """
+schema: fixture_design/task/1
+units: mm
+part: {mesh: plate.stl, scale: 0.001}
+candidates:
+  stem: {radius: 1, length: 15, body_radius: 4, body_length: 10}
+  pins: {clearance: 0.02, diameters: [4, 20]}
+require: {locators: [deterministic, loadable], all: [form_closure]}
+limits: {loading: [0, 0, -1]}
+"""
+
+
+@pytest.fixture
+def plate(tmp_path: Path) -> Path:
+    """A plate with two holes of 8 mm, in millimetres."""
+    outline = shapely.box(0, 0, 100, 60)
+    for x in (20, 80):
+        outline = outline.difference(shapely.Point(x, 30).buffer(4, quad_segs=16))
+    trimesh.creation.extrude_polygon(outline, 12).export(tmp_path / "plate.stl")
+    return tmp_path / "plate.stl"
+
+
+def test_pins_and_stems_of_a_task_are_in_its_units(command: Command, plate: Path, tmp_path: Path) -> None:
+    out, urdf = tmp_path / "out.yaml", tmp_path / "out.urdf"
+    ran = command("design", saved(plate.parent, PINNED), "-o", out, "--urdf", urdf)
+    assert ran.code == 0, ran.err + ran.out
+    assert "6 elements, the fewest" in ran.out
+    assert command("verify", out).code == 0
+    tips = [element.tip for element in read_layout(out).elements if isinstance(element.tip, PinTip)]
+    assert [(round(tip.diameter, 6), tip.clearance) for tip in tips] == [(0.00798, pytest.approx(2e-5))] * 2
+    assert sorted(tip.shape for tip in tips) == ["diamond", "round"]
+    sizes = [
+        (float(size.get("radius", 0)), float(size.get("length", 0)))
+        for link in ElementTree.parse(urdf).getroot().findall("link")
+        if (link.get("name") or "").startswith("K")
+        for size in link.findall("collision/geometry/cylinder")
+    ]
+    assert sizes == [(pytest.approx(0.001), pytest.approx(0.015)), (pytest.approx(0.004), pytest.approx(0.01))]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[4, 20]", "[20, 4]", "'diameters' is out of order"),
+        ("[4, 20]", "[0, 4]", "out of range"),
+        ("clearance: 0.02", "clearence: 0.02", "did you mean 'clearance'"),
+        ("length: 15", "length: 0", "'length' is out of range"),
+        ("stem: {radius: 1, ", "tips: [{pin: {diameter: 4, clearance: 0}}]\n  stem: {", "tips of this kind"),
+        ("stem: {radius: 1, ", "tips: [{line: 4}]\n  stem: {", "needs a direction"),
+    ],
+)
+def test_wrong_stems_tips_and_pins_are_told(command: Command, plate: Path, old: str, new: str, said: str) -> None:
+    assert old in PINNED
+    ran = command("design", saved(plate.parent, PINNED.replace(old, new)), "-o", plate.parent / "out.yaml")
+    assert ran.code == 2, ran.out
+    assert said in ran.err
+    assert ran.err.count("\n") <= 1
+
+
+def test_bodies_too_wide_to_stand_together_are_told(command: Command, plate: Path) -> None:
+    ran = command("design", saved(plate.parent, PINNED.replace("body_radius: 4", "body_radius: 400")))
+    assert ran.code == 3, ran.err
+    assert "out of each other's way" in ran.out
+
+
 def test_without_a_file_the_layout_goes_to_stdout(command: Command, tmp_path: Path) -> None:
     ran = command("design", saved(tmp_path, PLANAR))
     assert ran.code == 0, ran.err
@@ -135,7 +202,21 @@ def test_a_start_layout_is_repaired(command: Command, tmp_path: Path) -> None:
         ("spacing: 4", "keep_out: [{box: [[1, 1], [0, 0]]}]", "lowest"),
         ("spacing: 4", "keep_out: [{box: [[-1, -1], [50, 50]]}]", "no candidate points are left"),
         ("spacing: 4", "grid: {origin: [0, 0], pitch: 1}", "grid"),
-        ("spacing: 4", "tip: {pad: [1, 1], along: [1, 0]}", "tips of this kind"),
+        ("spacing: 4", "tip: {pin: {diameter: 4, clearance: 0}}", "tips of this kind"),
+        ("spacing: 4", "tip: {pad: [1, 1]}", "needs a direction"),
+        ("spacing: 4", "tip: {pad: [1, 1], along: [0, 0]}", "zero length"),
+        ("spacing: 4", "tip: {pad: [1, 1], along: [1, 0, 0]}", "2 coordinates"),
+        ("spacing: 4", "tip: {sphere: 1, along: [1, 0]}", "takes no direction"),
+        ("spacing: 4", "tip: {sphere: 1}, tips: [point]", "'tip' and 'tips' together"),
+        ("spacing: 4", "tips: []", "tips"),
+        ("spacing: 4", "tips: [point, {soft: -1}]", "out of range"),
+        ("spacing: 4", "stem: {radius: 1}", "stems are spatial"),
+        ("spacing: 4", "stem: {radius: 0}", "'radius' is out of range"),
+        ("spacing: 4", "pins: {clearance: 0, diameters: [1, 2]}", "pins in holes are for spatial parts"),
+        ("spacing: 4", "pins: {clearance: -1, diameters: [1, 2]}", "'clearance' is out of range"),
+        ("spacing: 4", "pins: {clearance: 1}", "'diameters' is missing"),
+        ("spacing: 4", "pins: {clearance: 0, diameters: [1]}", "diameters"),
+        ("spacing: 4", "stem: {width: 1}", "unknown key 'width'"),
         ("loading: [-1, -1]", "loading: [0, 0]", "zero length"),
         ("loading: [-1, -1]", "loading: [0, 0, 1]", "2 coordinates"),
         ("loading: [-1, -1]", "clamps: -1", "'clamps' is out of range"),

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fixture_design.analysis.acting import load_wrench
-from fixture_design.arrays import Points
+from fixture_design.arrays import Mask, Point, Points
 from fixture_design.contacts import Contact, Provenance, Scale
 from fixture_design.design import CandidateRules, Task
 from fixture_design.design.candidates import Candidates
-from fixture_design.layout import Layout, Part, Pose, Verdict
+from fixture_design.design.ways import Hole
+from fixture_design.layout import Element, Layout, Part, Pose, Stem, Verdict
 from fixture_design.verification import verify
 
 
@@ -39,6 +41,16 @@ class Fake:
 
     def spots(self, rules: CandidateRules, seed: int) -> Spots:
         return self.given
+
+    def touching(self, elements: Sequence[Element]) -> list[tuple[Contact, ...]]:
+        layout = Layout("alone")
+        return [self.contacts(replace(layout, elements=(element,))) for element in elements]
+
+    def holes(self) -> tuple[Hole, ...]:
+        return ()
+
+    def fits(self, points: Points, normals: Points, stem: Stem, out: Point | None = None) -> Mask:
+        return np.ones(len(points), dtype=bool)
 
     def wrenches(self, layout: Layout) -> tuple[np.ndarray, list[np.ndarray]]:
         p = self.given.points.shape[1]
