@@ -8,14 +8,14 @@ from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Indices, read_only
+from fixture_design.arrays import Indices
 from fixture_design.contacts import Role
-from fixture_design.design.drawing_up import fresh_names
+from fixture_design.design.drawing_up import fresh_names, new_element
 from fixture_design.design.problem import Problem
 from fixture_design.design.steps import Step, in_world, stopped, unnoticed
-from fixture_design.layout import Element, Layout, PointTip, SoftTip, SphereTip, Tip
+from fixture_design.layout import Element, Layout, PointTip, SoftTip, SphereTip
 
-#: Tips that can be anywhere; where another one leaves a point comes.
+#: Tips that can be anywhere; where another one leaves a new element's comes.
 _ANYWHERE = (PointTip, SphereTip, SoftTip)
 
 
@@ -68,11 +68,11 @@ def _nearest_pairs(problem: Problem, leaving: Sequence[Element], coming: Sequenc
 
 
 def _placed(problem: Problem, index: int, old: Element | None, role: Role, name: str) -> Element:
-    at = read_only(problem.candidates.places[index])
+    """The element that a candidate becomes; one that moves keeps its tip if that can be anywhere."""
+    new = new_element(problem.candidates, index, role, name)
     if old is None:
-        return Element(name, role, at)
-    tip: Tip = old.tip if isinstance(old.tip, _ANYWHERE) else PointTip()
-    return replace(old, at=at, tip=tip, axis=None)
+        return new
+    return replace(old, at=new.at, tip=old.tip if isinstance(old.tip, _ANYWHERE) else new.tip, axis=new.axis)
 
 
 def _step(

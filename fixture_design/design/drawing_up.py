@@ -43,7 +43,9 @@ def layout_of(
 ) -> Layout:
     """The layout with the elements chosen, locators first; bodies and contacts of the start as they were."""
     roles: tuple[tuple[Role, Indices], ...] = (("locator", locators), ("clamp", clamps))
-    elements = [_element(candidates, index, role, names[index]) for role, chosen in roles for index in chosen.tolist()]
+    elements = [
+        new_element(candidates, index, role, names[index]) for role, chosen in roles for index in chosen.tolist()
+    ]
     start = task.start
     given = {named.name for named in (*start.bodies, *start.contacts)} if start else set()
     return replace(
@@ -70,7 +72,8 @@ def empty_layout(task: Task, require: Mapping[str, tuple[Requirement, ...]], fri
     )
 
 
-def _element(candidates: Candidates, index: int, role: Role, name: str) -> Element:
+def new_element(candidates: Candidates, index: int, role: Role, name: str) -> Element:
+    """The element that a candidate is, or becomes."""
     known = candidates.elements[index]
     if known is not None:
         return known

@@ -19,6 +19,7 @@ from fixture_design.design.changed_layout import changed, index_of, raised
 from fixture_design.design.changes import Options, fewest_changes
 from fixture_design.design.clamping import closes, held_best
 from fixture_design.design.features import features_of
+from fixture_design.design.fitting import fitting, standing
 from fixture_design.design.found import Found
 from fixture_design.design.locating import exchanged
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty
@@ -29,6 +30,7 @@ from fixture_design.design.result import ChangeBound, DesignResult
 from fixture_design.design.search import search
 from fixture_design.design.start import begun, elements_of
 from fixture_design.design.task import CandidateRules, Limits, Task
+from fixture_design.design.touching import candidates_of
 from fixture_design.design.ways import Progress, Ways, ways_of
 from fixture_design.errors import UnsupportedError
 from fixture_design.layout import Answer, Layout, Requirement
@@ -66,7 +68,9 @@ def repair(
     progress("candidates", 0.0)
     task = _task(asked, rules or CandidateRules())
     proven = True
-    for some in by_certainty(Candidates.of(ways.spots(task.candidates, seed), ways.scale(), task.friction)):
+    everything, _ = candidates_of(task, ways, ways.spots(task.candidates, seed))
+    everything, _ = fitting(task, ways, everything)
+    for some in by_certainty(everything):
         problem = _problem(task, ways, some, cancelled)
         found = _fewest(task, ways, problem, seed, progress)
         if np.isfinite(found.found):
@@ -120,7 +124,8 @@ def _problem(task: Task, ways: Ways, candidates: Candidates, cancelled: Callable
         locates=bool(words & set(LOCATING)), leaves=bool(words & set(LEAVING)), opens="strongly_accessible" in words,
         closes="without friction" if "form_closure" in words else closes_how,
         features=features_of(task, candidates),
-        duties=duties_of(task, Plan(task.require, task.friction), ways, candidates), cancelled=cancelled,
+        duties=duties_of(task, Plan(task.require, task.friction), ways, candidates),
+        standing=standing(task, candidates), cancelled=cancelled,
     )  # fmt: skip
 
 
@@ -202,16 +207,18 @@ def _among_ways(problem: Problem, seed: int, progress: Progress, best: _Fewest) 
 def _best_places(problem: Problem, locators: Indices, clamps: Indices, pool: Indices) -> tuple[Indices, Indices]:
     """What comes, moved to where it is best: locators as exact as they can be, clamps with the largest margin."""
     staying = locators[~np.isin(locators, problem.new)]
-    single = problem.each == 1 and len(locators) == problem.candidates.freedoms and problem.limits.spacing == 0
-    if single and problem.locates:
+    if problem.each == 1 and len(locators) == problem.candidates.freedoms and problem.locates:
         moved = exchanged(problem.rows, pool, locators, staying, problem.features)
-        if problem.closes is None or closes(problem.closing_rows, np.concatenate([moved, clamps])):
+        everything = np.concatenate([moved, clamps])
+        if problem.together(everything) and (problem.closes is None or closes(problem.closing_rows, everything)):
             locators = moved
     coming = clamps[np.isin(clamps, problem.new)]
     others = np.concatenate([locators, np.setdiff1d(clamps, coming), np.array(problem.clamps, dtype=np.int64)])
     if problem.closes is not None and len(coming):
         free = np.setdiff1d(problem.new, others)
-        coming, _ = held_best(problem.closing_rows, others, coming, free)
+        coming, _ = held_best(
+            problem.closing_rows, others, coming, free, problem.candidates.places, standing=problem.standing
+        )
     return locators, np.concatenate([np.setdiff1d(clamps, problem.new), coming])
 
 

@@ -126,7 +126,7 @@ def _reacting(problem: Problem, region: Region, rng: np.random.Generator) -> Ind
     freedoms = problem.candidates.freedoms
     rows = independent(problem.rows, problem.rows_of(reacting), kept, rng, freedoms)
     rows = independent(problem.rows, problem.rows_of(region.pool), rows, rng, freedoms)
-    if len(rows) < freedoms or problem.limits.spacing > 0:
+    if len(rows) < freedoms or not problem.together(problem.owners(rows)):
         return None
     return np.union1d(problem.owners(rows), np.array(problem.locators, dtype=np.int64))
 

@@ -19,13 +19,14 @@ import numpy as np
 from fixture_design.arrays import Indices
 from fixture_design.design import CandidateRules, Task, design
 from fixture_design.design.adding import added
-from fixture_design.design.candidates import Candidates
 from fixture_design.design.clamping import closes
 from fixture_design.design.features import features_of
+from fixture_design.design.fitting import fitting
 from fixture_design.design.locating import exchanged, inaccuracy, independent
 from fixture_design.design.plans import by_certainty
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import ways_out
+from fixture_design.design.touching import candidates_of
 from fixture_design.layout import Answer, KeyFeature, Load, Part, Pose
 from fixture_design.verification.surface import PartSurface
 from tests.geometry.parts import SHARED
@@ -46,7 +47,6 @@ PARTS = (
     (f"{EDU}/base_front.stl", 1.0),
     (f"{EDU}/base_side_left.stl", 1.0),
     (f"{FINGERTIPS}/backing.stl", MM),
-    (f"{FINGERTIPS}/camera_arduino_holder.stl", MM),
     (f"{FINGERTIPS}/pcb_top_cover3.STL", MM),
     (f"{FINGERTIPS}/robotiq_adapter.stl", MM),
     (f"{GRIPPER}/robotiq_arg2f_85_inner_finger.obj", MM),
@@ -89,8 +89,9 @@ def task_of(file: Path, scale: float) -> tuple[Task, PartSurface]:
 
 
 def problem_of(task: Task, surface: PartSurface) -> Problem:
-    everything = Candidates.of(surface.spots(task.candidates, 0), surface.scale(), task.friction)
-    candidates = next(iter(by_certainty(everything)))
+    """The same candidates as the design has; that elements may not run into each other binds the design alone."""
+    everything, _ = candidates_of(task, surface, surface.spots(task.candidates, 0))
+    candidates = next(iter(by_certainty(fitting(task, surface, everything)[0])))
     return Problem(candidates, task.limits, task.objective, features=features_of(task, candidates))
 
 
