@@ -27,7 +27,7 @@ from fixture_design.design.ways import Progress
 from fixture_design.tolerances import GOOD_MARGIN
 
 #: Restarts in one region, and regions that are searched for better layouts of the same size.
-RESTARTS, MOST_REGIONS = 6, 8
+RESTARTS, MOST_REGIONS = 24, 8
 #: What an element of the start costs next to a new one [-]: it is kept where that makes no difference to the number.
 _KEPT_COST = 0.99
 

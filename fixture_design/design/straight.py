@@ -41,14 +41,15 @@ class Cell:
 
 def different(normals: Points) -> tuple[Points, np.ndarray]:
     """Unit normals without repetition, shape (m, p), and for each one given which of them it is."""
+    exact, which_exact = np.unique(normals, axis=0, return_inverse=True)
     kept: list[Point] = []
-    which = np.empty(len(normals), dtype=np.int64)
-    for index, normal in enumerate(normals):
+    which = np.empty(len(exact), dtype=np.int64)
+    for index, normal in enumerate(exact):
         near = [k for k, other in enumerate(kept) if np.abs(other - normal).max() <= COPLANAR_ANGLE]
         which[index] = near[0] if near else len(kept)
         if not near:
             kept.append(normal)
-    return np.array(kept), which
+    return np.array(kept), which[which_exact.ravel()]
 
 
 def cells(normals: Points, out: Point | None = None, seed: int = 0) -> tuple[list[Cell], bool]:
