@@ -25,7 +25,7 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
     for step in result.steps:
         yield printable(_step_in_words(step, reference, length))
     if result.free is not None:
-        yield f"free whatever touches the part: {motion_in_words(result.free, reference, length)}"
+        yield f"free whatever candidate touches the part: {motion_in_words(result.free, reference, length)}"
     if result.changes is not None:
         yield _changes_in_words(result.changes)
     if result.bound is not None:
@@ -58,7 +58,7 @@ def _step_in_words(step: Step, reference: Point, length: float) -> str:
     why = {
         "unnoticed": f"notices {motion}",
         "free": f"stops {motion}",
-        "bound": f"{others} constrain both ways",
+        "bound": f"{others} constrain both ways" if others else "it binds, or is in the way",
         "twice": f"{others} locate the same thing twice",
         "in the way": "the part does not come out past it",
         "spare": "the others do without it",
@@ -85,6 +85,7 @@ def _bound_in_words(bound: Bound) -> str:
     roles = f" ({bound.locators} locators, {bound.clamps} clamps)" if bound.locators else ""
     least = f"at least {bound.elements} elements{roles}"
     among = f"among {bound.candidates} candidates{'' if bound.complete else ' in the directions that were tried'}"
+    among += ", with a direction that leaves all locators at once" if bound.letting_go else ""
     if bound.gap == 0:
         return f"{bound.found} elements, the fewest {among}" + (" (proven)" if bound.proven else "")
     if bound.found is None:

@@ -1,5 +1,8 @@
 """Design: elements added, moved and removed until the conditions hold, and the proof that fewer do not."""
 
+import sys
+from types import ModuleType
+
 from fixture_design.design.design import design
 from fixture_design.design.repair import repair
 from fixture_design.design.result import Bound, ChangeBound, DesignResult
@@ -23,3 +26,13 @@ __all__ = [
     "design",
     "repair",
 ]
+
+
+class _Callable(ModuleType):
+    """This package under the name of its function: once it is imported, `fixture_design.design` means it."""
+
+    def __call__(self, *args: object, **keys: object) -> DesignResult:
+        return design(*args, **keys)  # type: ignore[arg-type]
+
+
+sys.modules[__name__].__class__ = _Callable

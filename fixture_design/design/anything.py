@@ -6,9 +6,10 @@ import numpy as np
 
 from fixture_design.arrays import Indices
 from fixture_design.design.adding import added
+from fixture_design.design.candidates import Several
 from fixture_design.design.clamping import closes, held_best
 from fixture_design.design.closing import fewest_closing
-from fixture_design.design.hitting import fewest_stopping
+from fixture_design.design.hitting import Hitting, fewest_stopping
 from fixture_design.design.problem import Problem
 
 #: Cuts after which the fewest are not known, and few are taken.
@@ -31,14 +32,21 @@ def closing_elements(problem: Problem, seed: int) -> tuple[Indices | None, int]:
                 return best, dimension + 1
     pool = problem.clampable
     pool = pool[problem.joins(pool, problem.kept)]
-    found = fewest_stopping(
+    found = _fewest(problem, rows, pool)
+    bound = found.bound
+    if problem.closes == "with friction":  # what does not close with pyramids in the cones may close with the cones
+        bound = _fewest(problem, problem.bounding_rows, pool).bound
+    if found.chosen is not None or found.complete:
+        return found.chosen, bound
+    return _few(problem, pool), bound
+
+
+def _fewest(problem: Problem, rows: Several, pool: Indices) -> Hitting:
+    return fewest_stopping(
         rows, problem.kept, pool, places=problem.candidates.places, spacing=problem.limits.spacing,
         standing=problem.standing, most_cuts=_MOST_CUTS, tolerances=problem.candidates.tolerances,
         cancelled=problem.cancelled,
     )  # fmt: skip
-    if found.chosen is not None or found.complete:
-        return found.chosen, found.bound
-    return _few(problem, pool), found.bound
 
 
 def _few(problem: Problem, pool: Indices) -> Indices | None:

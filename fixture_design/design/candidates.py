@@ -18,7 +18,7 @@ from jaxtyping import Float
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
 from fixture_design.contacts import Contact, Provenance, Scale, face_vectors, tangents, unit_normal
 from fixture_design.layout import Element, PointTip, Tip
-from fixture_design.tolerances import DEFAULT, Tolerances
+from fixture_design.tolerances import DEFAULT, NORMALS_KNOWN_TO, Tolerances
 
 #: For each candidate its points, normals or rows, as many for each: shape (n, k, ...); unused ones are zero.
 Several = Float[np.ndarray, "n k _"]
@@ -181,14 +181,23 @@ class Candidates:
             makes=tuple(self.makes[number] for number in numbers),
         )
 
-    def with_elements(self, found: Sequence[tuple[Element, Sequence[Contact]]]) -> Candidates:
+    def with_elements(
+        self, found: Sequence[tuple[Element, Sequence[Contact]]], known_to: float = NORMALS_KNOWN_TO[1]
+    ) -> Candidates:
         """These, and elements with the contacts they have: appended, so that indices stay.
 
         Alternatives (a tip on a convex edge) stop nothing for certain, whichever the part takes; they count as no row.
+        Nor do normals that are known less well than ``known_to`` [rad] and the candidates' own: they would blur these.
         """
         if not found:
             return self
         there = Candidates.touching(found, self.scale)
+        vague = there.errors > max(float(self.errors.max(initial=0.0)), known_to)
+        there = replace(
+            there,
+            normals=np.where(vague[:, None, None], 0.0, there.normals),
+            errors=np.where(vague, 0.0, there.errors),
+        )
         return self.and_also(
             replace(
                 there,

@@ -49,7 +49,7 @@ def changed(asked: Layout, problem: Problem, locators: Indices, clamps: Indices)
         for element in leaving:
             if element not in pairs.values():
                 del elements[element.name]
-                steps.append(Step("removed", element.name, "in the way"))
+                steps.append(Step("removed", element.name, "bound"))
     return replace(asked, elements=tuple(elements.values())), steps
 
 

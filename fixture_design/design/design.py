@@ -20,7 +20,7 @@ from fixture_design.design.preloads import duties_of, found_preload, preloaded
 from fixture_design.design.problem import Problem
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.search import search
-from fixture_design.design.shortfall import bound_of, refused, without_layout
+from fixture_design.design.shortfall import bound_of, failing, refused, without_layout
 from fixture_design.design.start import Start, begun
 from fixture_design.design.steps import Step, additions, in_world
 from fixture_design.design.task import Task
@@ -74,6 +74,7 @@ def design(
     left_out_notes += no_room
     best: DesignResult | None = None
     free: Vector | None = None
+    certain = False
     for plan in plans(task, ways):
         for some in by_certainty(candidates):
             for keep_all in (True, False) if _may_let_go(task) else (True,):
@@ -81,15 +82,39 @@ def design(
                 if left_out := len(candidates) - len(some):
                     note = f"{left_out} candidates on round or uncertain surfaces were left out"
                     found = replace(found, notes=(*found.notes, note))
+                    found = _not_yet_no(found, left_out)
                 found = replace(found, notes=(*found.notes, *left_out_notes))
                 best = found if best is None else _better(best, found)
                 if best.satisfied is Answer.YES or cancelled():
-                    return best if free is None else replace(best, free=free)
+                    return best if free is None else _instead(best, free, certain)
+        certain = best is not None and best.satisfied is Answer.NO
         if best is None or best.layout is not None or best.free is None:
             break
         free = best.free  # the next plan has to live with it
     assert best is not None  # there is at least one plan, and candidates for it
     return best
+
+
+def _instead(second: DesignResult, free: Vector, certain: bool) -> DesignResult:
+    """What another plan gave, where the first one left a motion free; no yes as long as that is not certain."""
+    if certain or second.satisfied is not Answer.YES:
+        return replace(second, free=free)
+    reason = (
+        f"{second.reason}; whether one without friction does is open: facets that may stand for round surfaces have "
+        "normals that are not known (`part: {faceted: true}` says that every facet is meant as it is)"
+    )
+    return replace(second, satisfied=Answer.UNDECIDED, free=free, reason=reason)
+
+
+def _not_yet_no(found: DesignResult, left_out: int) -> DesignResult:
+    """A no that some candidates had no part in is none."""
+    if found.satisfied is not Answer.NO:
+        return found
+    reason = (
+        f"{found.reason}; {left_out} more, whose normals are known less well, were not looked at (`part: {{faceted: true}}` "
+        "says that every facet is meant as it is)"
+    )
+    return replace(found, satisfied=Answer.UNDECIDED, reason=reason)
 
 
 def _may_let_go(task: Task) -> bool:
@@ -116,14 +141,16 @@ def _designed(
     """One attempt: among these candidates, with this plan."""
     locators, everything = plan.require.get("locators", ()), plan.require.get("all", ())
     leaves = bool(set(LEAVING) & set(locators)) or task.require is None or task.limits.loading is not None
-    start = begun(task, candidates.with_friction(plan.friction), ways, leaves, keep_all)
+    opens = "strongly_accessible" in locators
+    start = begun(task, candidates.with_friction(plan.friction), ways, keep_all, leaves=leaves and opens, opens=opens)
     closes = "with friction" if "force_closure" in everything else None
     problem = Problem(
         start.candidates, task.limits, task.objective, start.locators, start.others, start.spare,
         locates=bool(set(LOCATING) & set(locators)), leaves=leaves,
         closes="without friction" if "form_closure" in everything else closes,
         features=features_of(task, start.candidates), duties=duties_of(task, plan, ways, start.candidates),
-        standing=standing(task, start.candidates),
+        standing=standing(task, start.candidates), determines=bool({"deterministic", "accurate"} & set(locators)),
+        enters=leaves or opens or "accessible" in locators, opens=opens,
         cancelled=cancelled,
     )  # fmt: skip
     if start.conflict:
@@ -200,7 +227,7 @@ def _past_locators(
     outcome = find(problem, seed, progress)
     bound = bound_of(problem, outcome)
     if outcome.found is None or refused(task, outcome.found):
-        return without_layout(problem, outcome, bound, start)
+        return without_layout(problem, outcome, bound, start, seed)
     result, names = _drawn_up(task, ways, problem, outcome, bound, start, plan)
     assert result.verdict is not None
     hit = in_the_way(task, ways, problem, outcome.found, result.verdict, names)
@@ -228,10 +255,12 @@ def _unstoppable(task: Task, ways: Ways, problem: Problem, candidates: Candidate
     assert problem.never_stopped is not None
     free = in_world(problem.never_stopped, candidates.scale)
     reason = f"no candidate stops a motion; {len(candidates)} were there"
-    if not candidates.errors.any():
+    if not candidates.errors.any() and not problem.vague:
         return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
     certain = (
-        free_for_certain(replace(task, start=None), ways, candidates) if problem.closes != "with friction" else None
+        free_for_certain(replace(task, start=None), ways, candidates)
+        if problem.closes != "with friction" and not problem.vague
+        else None
     )
     if certain is not None:
         return DesignResult(Answer.NO, None, steps=start.steps, free=certain, reason=reason)
@@ -279,13 +308,14 @@ def _drawn_up(
     closure = verdict.groups["all"].findings.get(
         "force_closure" if problem.closes == "with friction" else "form_closure"
     )
-    reason = plan.reason if answer is Answer.YES else "the layout that was found does not verify"
+    reason = plan.reason if answer is Answer.YES else f"the layout that was found does not verify: {failing(verdict)}"
+    exact = found.accuracy if np.isfinite(found.accuracy) else None
     shown = replace(problem, locators=start.locators)  # new pins have their reasons too
     result = DesignResult(
         # a layout that fails does not prove that none holds
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(shown, found.locators, found.clamps, names)), bound,
-        found.out, found.accuracy, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
+        found.out, exact, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
         preload=found_preload(problem, layout), best_preload=outcome.best_preload,
         best_preload_here=outcome.best_preload_here,
         reason=reason, notes=tuple(_notes(task, problem, found)),

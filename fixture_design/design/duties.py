@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -56,6 +56,11 @@ class Duties:
         kept = _far_apart(rows)
         alone = np.array([seated and row == 0 for row in kept])
         return cls(rows[kept], alone, alone, *limits, required)
+
+    def and_more(self, count: int) -> Duties:
+        """The same for so many more candidates, which are no clamps."""
+        more = np.zeros(count)
+        return replace(self, low=np.append(self.low, more), high=np.append(self.high, more))
 
 
 def scaled(wrench: Vector, scale: Scale) -> Vector:

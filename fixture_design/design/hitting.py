@@ -77,6 +77,8 @@ def fewest_stopping(
     base, pool = np.asarray(base, dtype=np.int64), np.asarray(pool, dtype=np.int64)
     costs = np.ones(len(pool)) if costs is None else costs
     dimension = rows.shape[2]
+    if len(base) and free_motion(flat(rows, base), tolerances) is None:
+        return Hitting(pool[:0], 0, None, np.empty((0, dimension)))
     free = free_motion(flat(rows, np.concatenate([base, pool])), tolerances)
     if free is not None:
         return Hitting(None, len(pool) + 1, free, np.empty((0, dimension)))

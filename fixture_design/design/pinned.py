@@ -146,12 +146,13 @@ def _with_pins(
     if not all(contacts):
         return None
     count = len(problem.candidates)
-    candidates = problem.candidates.with_elements(list(zip(pins, contacts, strict=True)))
+    candidates = problem.candidates.with_elements(list(zip(pins, contacts, strict=True)), known_to=np.inf)
     changed = replace(
         problem,
         candidates=candidates,
         locators=(*problem.locators, count, count + 1),
         features=features_of(task, candidates),
+        duties=None if problem.duties is None else problem.duties.and_more(len(pins)),
         standing=standing(task, candidates),
     )
     return Pinned(changed, out, {pin.name: hole.feature for pin, hole in zip(pins, holes, strict=True)})

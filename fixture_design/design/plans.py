@@ -36,7 +36,10 @@ def plans(task: Task, ways: Ways) -> Iterator[Plan]:
     leaving: tuple[Requirement, ...] = tuple(word for word in LEAVING if word in ways.answers)
     without: Require = {"locators": ("deterministic", "strongly_accessible", *leaving), "all": ("form_closure",)}
     yield Plan(without, task.friction)
-    reason = "no layout without friction closes this part; with friction one does, and the locators let it move freely"
+    reason = (
+        "without friction no layout among these candidates closes the part; with friction one does, and the locators "
+        "let it move freely"
+    )
     rubbing: Require = {"locators": ("strongly_accessible", *leaving), "all": ("force_closure",)}
     yield Plan(
         rubbing,

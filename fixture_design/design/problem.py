@@ -29,9 +29,12 @@ class Problem:
         spare: indices of clamps of the start that may leave, preferred to new ones.
         locates: whether the locators must determine the part, as far as any candidates can.
         leaves: whether the part must come out of the locators in a straight line.
+        determines: whether the locators must determine the part, so that there are as many rows as freedoms.
+        enters: whether the locators must leave the part some motion.
         opens: whether some motion must leave all locators at once, be it a screw.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
+        generous: whether friction cones are taken a little larger than they are, for bounds, and not smaller.
         standing: which of them would run into each other; None where nobody knows.
         barred: directions out, each with the candidates that the part would run into along it, shape (n,).
         duties: what is to be balanced by preloads; None where nobody asks.
@@ -46,10 +49,13 @@ class Problem:
     spare: tuple[int, ...] = ()
     locates: bool = True
     leaves: bool = True
-    opens: bool = False
+    determines: bool = True
+    enters: bool = True
+    opens: bool = True
     closes: str | None = "without friction"
     features: Features | None = None
     standing: Standing | None = None
+    generous: bool = False
     barred: tuple[tuple[Point, Mask], ...] = ()
     duties: Duties | None = None
     cancelled: Callable[[], bool] = lambda: False
@@ -72,6 +78,8 @@ class Problem:
     @cached_property
     def closing_rows(self) -> Several:
         """The rows that must close, shape (n, k, d)."""
+        if self.generous:
+            return self.bounding_rows
         return self.candidates.rows_with_friction if self.closes == "with friction" else self.candidates.rows
 
     @cached_property
@@ -141,6 +149,12 @@ class Problem:
     def owners(self, rows: Indices) -> Indices:
         """The candidates of rows, each once."""
         return np.unique(rows // self.each)
+
+    @property
+    def vague(self) -> bool:
+        """Whether elements of the start may do more than their rows say: where alternatives, or normals, are open."""
+        rows = self.candidates.rows
+        return any(e is not None and not rows[index].any() for index, e in enumerate(self.candidates.elements))
 
     @property
     def crowded(self) -> bool:

@@ -5,7 +5,7 @@ The bound of a region lets *all* of its candidates be locators: what does not cl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,7 +44,10 @@ def regions_of(problem: Problem, seed: int) -> tuple[list[Region], bool]:
     found, complete = ways_out(problem, seed)
     for direction, allowed in found:
         pool = problem.new[allowed[problem.new]]
-        if not allowed[list(problem.locators)].all() or not _enough(problem, pool):
+        if not allowed[list(problem.locators)].all():
+            continue
+        if not _enough(problem, pool):
+            complete = complete and problem.determines  # fewer locators than are looked for might do
             continue
         if problem.closes is None:
             regions.append(Region(direction, pool, None))
@@ -66,13 +69,32 @@ def ways_out(problem: Problem, seed: int) -> tuple[list[tuple[Point | None, Mask
     said: Mask = np.any(flat_normals, axis=1)
     unit, which = different(flat_normals[said])
     loading = problem.limits.loading
-    found, complete = cells(unit, None if loading is None else -loading, seed)
+    found, complete = cells(unit, None if loading is None else -loading, seed, sliding=not problem.opens)
     ways: list[tuple[Point | None, Mask]] = []
     for cell in found[:MOST_BOUNDED]:
         leaves = np.ones(len(flat_normals), dtype=bool)
         leaves[said] = cell.leaves[which]
         ways.append((cell.direction, np.all(leaves.reshape(len(several), -1), axis=1)))
     return ways, complete and len(found) <= MOST_BOUNDED
+
+
+def least_clamps_sliding(problem: Problem, seed: int, enough: int) -> float:
+    """No layout has fewer clamps, or inf if there is none, even if the part may slide out along its locators; 0 where
+    that is not known.
+
+    Args:
+        enough: a bound that need not be known any better.
+    """
+    ways, complete = ways_out(replace(problem, opens=False), seed)
+    least = np.inf
+    for _, allowed in ways if complete else []:
+        pool = problem.new[allowed[problem.new]]
+        if not allowed[list(problem.locators)].all() or (problem.determines and not _enough(problem, pool)):
+            continue
+        clamps = None if problem.closes is None else _bounded(problem, pool, float(enough))
+        if clamps is None or clamps.chosen is not None or not clamps.complete or clamps.bound >= enough:
+            least = min(least, 0.0 if clamps is None else float(clamps.bound))
+    return float(least) if complete else 0.0
 
 
 def bounded_region(problem: Problem, out: Point) -> Region | None:
@@ -108,7 +130,7 @@ def _bounded(problem: Problem, pool: Indices, enough: float) -> Hitting:
 
 
 def _clamps_of_all(problem: Problem) -> Hitting:
-    """Without a way out: d + 1 rows at least where there is no friction, so one clamp more than freedoms."""
-    needs = 1 if problem.closes == "without friction" else 0
+    """Without a way out: what leaves the locators some motion is stopped by a clamp."""
+    needs = 1 if problem.enters else 0
     dimension = problem.candidates.dimension
     return Hitting(problem.new[:0], max(needs, len(problem.clamps)), None, np.empty((0, dimension)))

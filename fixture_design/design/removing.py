@@ -44,6 +44,7 @@ def cleared(
     name: Names,
     *,
     leaves: bool = True,
+    opens: bool = True,
     out: Point | None = None,
 ) -> Cleared:
     """Locators without those that bind, with a record.
@@ -51,6 +52,7 @@ def cleared(
     Args:
         locators: indices of candidates.  staying: those of them that may not leave.
         leaves: whether the part must come out in a straight line; ``out``: in this direction.
+        opens: whether some motion must leave all of them; if not, they may constrain both ways.
     """
     left, steps, conflict = list(locators), list[Step](), tuple[str, ...]()
     if leaves and out is not None:
@@ -58,7 +60,7 @@ def cleared(
         steps += [Step("removed", name(one), "in the way") for one in blocking if one not in staying]
         conflict = tuple(name(one) for one in blocking if one in staying)
         left = [one for one in left if one not in blocking or one in staying]
-    while bound := _bound(candidates, left, leaves):
+    while opens and (bound := _bound(candidates, left, leaves)):
         movable = [one for one in bound if one not in staying]
         if not movable:
             return Cleared(tuple(left), tuple(steps), tuple(map(name, bound)))

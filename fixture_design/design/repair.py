@@ -7,7 +7,7 @@ found step by step. Among changes that are as few, the places are those that are
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +28,7 @@ from fixture_design.design.problem import Problem
 from fixture_design.design.regions import ways_out
 from fixture_design.design.result import ChangeBound, DesignResult
 from fixture_design.design.search import search
+from fixture_design.design.shortfall import failing
 from fixture_design.design.start import begun, elements_of
 from fixture_design.design.task import CandidateRules, Limits, Task
 from fixture_design.design.touching import candidates_of
@@ -92,18 +93,24 @@ def _asked_for(layout: Layout, ways: Ways) -> Layout:
     )
 
 
-def _requirements(layout: Layout) -> Iterator[Requirement]:
-    for words in (*layout.require.values(), *(stage.require for stage in layout.stages)):
-        yield from words
+def _words(layout: Layout) -> tuple[set[Requirement], set[Requirement]]:
+    """What is required of locators alone, and of groups with other contacts."""
+    names = {"locator", *(element.name for element in layout.elements if element.role == "locator")}
+    of_locators, of_others = set(layout.require.get("locators", ())), set(layout.require.get("all", ()))
+    for stage in layout.stages:
+        (of_locators if set(stage.active) <= names else of_others).update(stage.require)
+    return of_locators, of_others
 
 
 def _task(layout: Layout, rules: CandidateRules) -> Task:
-    """The layout as a task: all that any of its stages requires."""
+    """The layout as a task that asks for all that any of its stages requires."""
     assert layout.part is not None
+    of_locators, of_others = _words(layout)
+    require = {"locators": tuple(sorted(of_locators)), "all": tuple(sorted(of_others))}
     return Task(
-        layout.name, layout.part, layout.space, rules, layout, {"all": tuple(dict.fromkeys(_requirements(layout)))},
-        Limits(), gravity=layout.gravity, friction=layout.friction, surface_gap=layout.surface_gap,
-        key_features=layout.key_features, loads=layout.loads, source=layout.source, places=layout.places,
+        layout.name, layout.part, layout.space, rules, layout, require, Limits(), gravity=layout.gravity,
+        friction=layout.friction, surface_gap=layout.surface_gap, key_features=layout.key_features, loads=layout.loads,
+        source=layout.source, places=layout.places,
     )  # fmt: skip
 
 
@@ -111,19 +118,20 @@ def _problem(task: Task, ways: Ways, candidates: Candidates, cancelled: Callable
     """Everything of the layout among the candidates; supports, fingers, bodies and given contacts stay."""
     assert task.start is not None
     assert task.require is not None
-    words = set(task.require["all"])
+    of_locators, of_others = set(task.require["locators"]), set(task.require["all"])
+    both = of_locators | of_others
     candidates = candidates.with_elements(elements_of(task.start, ways))
     others = [
         index
         for index, element in enumerate(candidates.elements)
         if element is not None and element.role not in ("locator", "clamp")
     ]
-    closes_how = "with friction" if "force_closure" in words else None
+    closes_how = "with friction" if "force_closure" in both else None
     return Problem(
         candidates, task.limits, task.objective, (), tuple(others),
-        locates=bool(words & set(LOCATING)), leaves=bool(words & set(LEAVING)), opens="strongly_accessible" in words,
-        closes="without friction" if "form_closure" in words else closes_how,
-        features=features_of(task, candidates),
+        locates=bool(of_locators & set(LOCATING)), leaves=bool(both & set(LEAVING)),
+        opens="strongly_accessible" in of_locators, determines=bool(of_locators & {"deterministic", "accurate"}),
+        closes="without friction" if "form_closure" in both else closes_how, features=features_of(task, candidates),
         duties=duties_of(task, Plan(task.require, task.friction), ways, candidates),
         standing=standing(task, candidates), cancelled=cancelled,
     )  # fmt: skip
@@ -160,8 +168,10 @@ def _as_designed(task: Task, ways: Ways, problem: Problem, seed: int, progress: 
     """What the search for the best layout makes of this start, with all clamps that it had."""
     none = np.zeros(0, dtype=np.int64)
     new = problem.candidates.chosen(problem.new)
-    start = begun(task, new, ways, leaves=True, keep_all=True)
-    as_begun = replace(problem, locators=start.locators, clamps=start.others, spare=start.spare, leaves=True)
+    start = begun(task, new, ways, keep_all=True, leaves=True, opens=True)
+    as_begun = replace(
+        problem, locators=start.locators, clamps=start.others, spare=start.spare, leaves=True, opens=True
+    )
     found = None if start.conflict or problem.never_stopped is not None else search(as_begun, seed, progress).found
     if found is None:
         return _Fewest(np.inf, 0, True, none, none, none)
@@ -180,11 +190,14 @@ def _changes(before: Indices, after: Indices) -> int:
 
 
 def _among_ways(problem: Problem, seed: int, progress: Progress, best: _Fewest) -> _Fewest:
-    """The fewest changes in any way out, or ``best`` if there are no fewer; the bound is of all these ways."""
+    """The fewest changes in any way out, or ``best`` if there are no fewer; the bound is of all these ways.
+
+    The part may slide out along its locators; that some motion leaves all of them is asked for itself.
+    """
     locators, clamps = _of_role(problem, "locator"), _of_role(problem, "clamp")
     fixed = np.array([i for i, e in enumerate(problem.candidates.elements) if e is not None and e.fixed], np.int64)
-    ways, complete = ways_out(problem, seed)
-    bound = np.inf
+    ways, complete = ways_out(replace(problem, opens=False), seed)
+    bound, complete = np.inf, complete and not problem.vague
     # where many locators have to leave there are many changes
     for number, (_, allowed) in enumerate(sorted(ways, key=lambda way: int((~way[1][locators]).sum()))):
         leaving = int((~allowed[locators]).sum())
@@ -197,7 +210,10 @@ def _among_ways(problem: Problem, seed: int, progress: Progress, best: _Fewest) 
         pool = problem.new[allowed[problem.new]]
         options = Options.of(problem, locators[allowed[locators]], clamps, fixed, pool)
         found = fewest_changes(problem, options, leaving, best.found, problem.cancelled)
-        bound, complete = min(bound, found.bound), complete and found.complete
+        sure = found
+        if problem.closes == "with friction":  # the true cones close with no more than the larger ones
+            sure = fewest_changes(replace(problem, generous=True), options, leaving, best.found, problem.cancelled)
+        bound, complete = min(bound, sure.bound), complete and sure.complete
         if found.locators is not None and found.clamps is not None:
             best = _Fewest(float(found.bound), 0, True, found.locators, found.clamps, pool)
     least = int(min(bound, best.found)) if np.isfinite(min(bound, best.found)) else 0
@@ -237,7 +253,7 @@ def _drawn_up(
             preloads = list(raised(after, pushed))
             after, verdict, steps = pushed, again, [*steps, *preloads]
     satisfied = Answer.YES if verdict.satisfied is None else verdict.satisfied
-    reason = None if satisfied is Answer.YES else "it locates, lets out and closes, and something else does not hold"
+    reason = None if satisfied is Answer.YES else f"what was found does not verify: {failing(verdict)}"
     return DesignResult(
         Answer.UNDECIDED if satisfied is Answer.NO else satisfied, after, verdict, tuple(steps),
         changes=ChangeBound(len(steps), bound, complete), reason=reason,

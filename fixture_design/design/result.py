@@ -19,6 +19,8 @@ class Bound:
         found: elements of the layout; None without one.
         complete: whether that is so in all directions out, or only in those that were tried.
         candidates: among how many it holds.
+        letting_go: whether it is that of layouts where some direction leaves all locators at once (n . t < 0); others
+            that the part slides out of may have fewer.
     """
 
     locators: int
@@ -27,6 +29,7 @@ class Bound:
     found: int | None
     complete: bool
     candidates: int
+    letting_go: bool = False
 
     @property
     def gap(self) -> int | None:

@@ -18,7 +18,7 @@ from fixture_design.design.clamping import closes, held_best, locators_for, marg
 from fixture_design.design.closing import fewest_closing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
-from fixture_design.design.locating import exchanged, inaccuracy, independent, volume
+from fixture_design.design.locating import exchanged, independent
 from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
 from fixture_design.design.pressing import least_bound, least_of_all, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
@@ -37,6 +37,7 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
     if not (problem.locates or problem.leaves or problem.closes is None):
         return _whatever_closes(problem, seed)
     regions, complete = regions_of(problem, seed)
+    complete = complete and not problem.vague
     best: Found | None = None
     for number, region in enumerate(regions):
         if problem.cancelled() or (best is not None and (region.bound > len(best.clamps) or number >= MOST_REGIONS)):
@@ -63,7 +64,7 @@ def _with_bounds(
     """With bounds over all regions that might do with as few clamps; none of accuracy where rows are redundant."""
     left = [region for region in regions if region.bound <= len(best.clamps)]
     preload, here = _best_preload(problem, left), _best_preload_here(problem, best)
-    redundant = problem.several and redundancy(problem, best.locators) > 0
+    redundant = redundancy(problem, best.locators) > 0
     return Outcome(best, least, complete, None if redundant else _best_accuracy(problem, left), preload, here)
 
 
@@ -72,14 +73,14 @@ def _whatever_closes(problem: Problem, seed: int) -> Outcome:
     chosen, least = closing_elements(problem, seed)
     least += len(problem.kept)
     if chosen is None:
-        return Outcome(None, 0, True, least_elements=least)
+        return Outcome(None, 0, not problem.vague, least_elements=least)
     was = np.isin(chosen, problem.spare)
     new = chosen[~was]
     clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[-1:]])
     locators = np.concatenate([problem.kept[: len(problem.locators)], new[:-1]])
     margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
     found = Found(locators, clamps, None, accuracy(problem, locators), margin)
-    return Outcome(found, 0, True, least_elements=least)
+    return Outcome(found, 0, not problem.vague, least_elements=least)
 
 
 def _better_within(
@@ -252,7 +253,7 @@ def _best_accuracy(problem: Problem, regions: Sequence[Region]) -> float:
         if problem.features is not None and problem.candidates.freedoms == problem.candidates.dimension:
             least = min(least, least_error(problem.rows, problem.features, pool))
         else:
-            least = min(least, 1.0 / largest_volume(problem.rows[pool]))
+            least = min(least, 1.0 / largest_volume(problem.rows[pool] @ problem.noticed.T))
     return float(least)
 
 
@@ -274,9 +275,4 @@ def _best_preload(problem: Problem, regions: Sequence[Region]) -> float | None:
 
 def accuracy(problem: Problem, locators: Indices) -> float:
     """Of locators; small is good."""
-    if problem.several:
-        return inexactness_of(problem, locators)
-    numbers = problem.rows_of(locators)
-    if problem.features is not None and len(numbers) == problem.candidates.dimension:
-        return inaccuracy(problem.rows, problem.features, numbers)
-    return 1.0 / max(volume(problem.rows, numbers[: problem.candidates.dimension]), np.finfo(float).tiny)
+    return inexactness_of(problem, locators)

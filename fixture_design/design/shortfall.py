@@ -7,10 +7,11 @@ import numpy as np
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import fewest_locators
 from fixture_design.design.problem import Problem
+from fixture_design.design.regions import least_clamps_sliding
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.start import Start
 from fixture_design.design.task import Task
-from fixture_design.layout import Answer
+from fixture_design.layout import Answer, Verdict
 
 
 def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
@@ -20,11 +21,12 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
     found = None if outcome.found is None else outcome.found.count
     if outcome.least_elements is not None:
         return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
-    locators = fewest_locators(problem)
+    locators = fewest_locators(problem) if problem.determines else len(problem.locators)
     clamps = outcome.least_clamps
     single = problem.each == 1 and problem.closes == "without friction"
     elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
-    return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates))
+    letting_go = problem.leaves and problem.opens
+    return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates), letting_go)
 
 
 def refused(task: Task, found: Found) -> bool:
@@ -36,6 +38,17 @@ def refused(task: Task, found: Found) -> bool:
     return many_locators or (limits.clamps is not None and len(found.clamps) > limits.clamps)
 
 
+def failing(verdict: Verdict) -> str:
+    """Which requirements do not hold, and why, where that is told."""
+    told = []
+    for required in verdict.requirements:
+        if required.answer is not Answer.YES:
+            finding = verdict.groups[required.group].findings.get(required.require)
+            why = f" ({finding.reason})" if finding is not None and finding.reason else ""
+            told.append(f"{required.require} of {required.group} is {required.answer or 'not asked'}{why}")
+    return "; ".join(told)
+
+
 def _not_held(outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
     """No clamps hold the loads within the limits of their preload."""
     if outcome.best_preload == np.inf and outcome.complete:
@@ -45,21 +58,34 @@ def _not_held(outcome: Outcome, bound: Bound | None, start: Start) -> DesignResu
     return DesignResult(Answer.UNDECIDED, None, steps=start.steps, bound=bound, reason=reason)
 
 
-def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
-    """Why there is none, and whether that is proven."""
+def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start, seed: int) -> DesignResult:
+    """Why there is none, and whether that is proven.
+
+    Ways out that leave every locator at once are searched where some motion has to; others, along which the part
+    slides, are only bounded.
+    """
     limits, steps = problem.limits, start.steps
+    complete = outcome.complete and problem.determines
     if outcome.found is not None and not outcome.found.holds:
         return _not_held(outcome, bound, start)
     if bound is None:
         reason = "no straight way out leaves enough places for locators that determine the part"
-        answer = Answer.NO if outcome.complete else Answer.UNDECIDED
+        if complete and problem.leaves and problem.opens:
+            complete = least_clamps_sliding(problem, seed, 1) == np.inf
+            reason += " and is not only slid out of" if not complete else ""
+        answer = Answer.NO if complete else Answer.UNDECIDED
         return DesignResult(answer, None, steps=steps, reason=reason)
     for what, least, most in (("locators", bound.locators, limits.locators), ("clamps", bound.clamps, limits.clamps)):
         if most is not None and least > most:
-            answer = Answer.NO if bound.complete else Answer.UNDECIDED
+            certain = bound.complete and (what == "clamps" or problem.determines)
+            if certain and what == "clamps" and problem.leaves and problem.opens:
+                certain = least_clamps_sliding(problem, seed, most + 1) > most
+            answer = Answer.NO if certain else Answer.UNDECIDED
             reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
             return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
-    reason = f"no layout was found; at least {bound.locators} locators and {bound.clamps} clamps are needed"
+    needed = f"{bound.locators} locators and {bound.clamps} clamps"
+    needed = needed if outcome.least_elements is None else f"{bound.elements} elements"
+    reason = f"no layout was found; at least {needed} are needed"
     if problem.standing is not None:
         reason += ", with stems and bodies out of each other's way"
     return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)

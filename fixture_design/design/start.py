@@ -39,12 +39,13 @@ class Start:
         return str(index) if element is None else element.name
 
 
-def begun(task: Task, candidates: Candidates, ways: Ways, leaves: bool, keep_all: bool) -> Start:
+def begun(task: Task, candidates: Candidates, ways: Ways, keep_all: bool, *, leaves: bool, opens: bool) -> Start:
     """The start of a task, cleared of locators that bind.
 
     Args:
-        leaves: whether the part must come out of the locators in a straight line.
         keep_all: whether to keep what does no harm, or only what is ``fixed``.
+        leaves: whether the part must come out of the locators in a straight line.  opens: whether some motion must
+            leave all of them at once.
     """
     found = elements_of(task.start, ways) if task.start is not None else []
     everything = candidates.with_elements(found)
@@ -54,7 +55,7 @@ def begun(task: Task, candidates: Candidates, ways: Ways, leaves: bool, keep_all
     locators = [i for i, e in numbers.items() if e.role == "locator" and (keep_all or e.fixed)]
     start = Start(everything)
     out = None if task.limits.loading is None else -np.asarray(task.limits.loading)
-    kept: Cleared = cleared(everything, locators, fixed, start.name, leaves=leaves, out=out)
+    kept: Cleared = cleared(everything, locators, fixed, start.name, leaves=leaves, opens=opens, out=out)
     let_go = [i for i, e in numbers.items() if e.role == "locator" and i not in locators]
     steps = (*(Step("removed", start.name(index), "spare") for index in let_go), *kept.steps)
     others = [i for i, e in numbers.items() if e.role != "locator" and (e.fixed or e.role != "clamp")]

@@ -6,6 +6,7 @@ direction may leave changes only where it crosses a plane n . t = 0, so that the
 n_i X n_j, and near a ray the same question is asked in the plane across it.
 
 Locators that the part would only slide between (n . t = 0 on both sides, as in a slot) have no way out in this sense.
+Where sliding is allowed, n . t <= 0, the sets of normals are largest on the rays themselves, which are all there is.
 """
 
 from __future__ import annotations
@@ -52,15 +53,23 @@ def different(normals: Points) -> tuple[Points, np.ndarray]:
     return np.array(kept), which[which_exact.ravel()]
 
 
-def cells(normals: Points, out: Point | None = None, seed: int = 0) -> tuple[list[Cell], bool]:
+def cells(
+    normals: Points, out: Point | None = None, seed: int = 0, *, sliding: bool = False
+) -> tuple[list[Cell], bool]:
     """The cells of some different unit normals, most normals left first, and whether these are all.
 
     Args:
         normals: shape (m, p).
         out: the direction the part must be able to come out in: only cells that touch it are given, so that none of
             their normals is in its way (n . out <= 0).
+        sliding: whether the part may slide along a normal's facet, n . t = 0.
     """
-    if out is not None:
+    most = COPLANAR_ANGLE if sliding else -COPLANAR_ANGLE
+    if sliding and out is not None:
+        found, complete = [out / np.linalg.norm(out)], True
+    elif sliding and (normals.shape[1] == 2 or len(normals) <= MOST_NORMALS):
+        found, complete = _rays(normals), True
+    elif out is not None:
         found, complete = _near(out / np.linalg.norm(out), normals), True
     elif normals.shape[1] == 2:
         found, complete = _in_the_plane(normals), True
@@ -70,13 +79,30 @@ def cells(normals: Points, out: Point | None = None, seed: int = 0) -> tuple[lis
         found, complete = _tried(normals, seed), False
     best: dict[bytes, Cell] = {}
     for direction in found:
-        leaves = normals @ direction < -COPLANAR_ANGLE
+        leaves = normals @ direction <= most
         if out is not None:
             leaves &= normals @ out <= COPLANAR_ANGLE
         key = leaves.tobytes()
         if leaves.any() and (key not in best or _depth(normals, direction) > _depth(normals, best[key].direction)):
             best[key] = Cell(direction, leaves)
     return sorted(_largest(list(best.values())), key=lambda cell: -int(cell.leaves.sum())), complete
+
+
+def _rays(normals: Points) -> Iterator[Point]:
+    """Directions against one normal, and across one normal in the plane, or two in space, both ways."""
+    yield from -normals
+    if normals.shape[1] == 2:
+        across = np.column_stack([-normals[:, 1], normals[:, 0]])
+        yield from (*across, *-across)
+        return
+    for first in normals:  # in space all parallel: across them in any direction
+        side = np.linalg.svd(first[None])[2][1]
+        yield from (side, -side)
+    for first, second in combinations(range(len(normals)), 2):
+        ray = cross_products(normals[first], normals[second])
+        length = np.linalg.norm(ray)
+        if length > COPLANAR_ANGLE:
+            yield from (ray / length, -ray / length)
 
 
 def _depth(normals: Points, direction: Point) -> float:

@@ -55,6 +55,7 @@ def _bound(bound: Bound) -> Data:
         "proven": bound.proven,
         "complete": bound.complete,
         "candidates": bound.candidates,
+        "letting_go": bound.letting_go,
     }
 
 

@@ -3,7 +3,7 @@
 By hand: `python -m tests.benchmarks.compare_design [PART ...]`. The figure is the worst error at three key features for
 errors of 1 along the locators' normals. *Rule of thumb*: the widest 3-2-1 on the largest faces. *Plain exchange*: a
 random way out, random locators, exchanges until none is better, clamps one after the other; ten times, or for as long
-as the design took if that is longer (processor time). *Bound*: no locators among the candidates with a way out have less.
+as the design took if that is longer (processor time). *Bound*: no locators with a way out have less.
 """
 
 from __future__ import annotations

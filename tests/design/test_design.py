@@ -166,3 +166,11 @@ def test_a_fixture_may_only_locate() -> None:
 def test_cancelled_at_once_gives_what_is_there() -> None:
     result = design(task(box(8)), Fake(box(8)), cancelled=lambda: True)
     assert result.satisfied in (Answer.UNDECIDED, Answer.YES)
+
+
+def test_the_function_is_found_under_its_name_also_once_the_package_is_loaded() -> None:
+    import fixture_design as fd  # noqa: PLC0415 - as a user does
+
+    assert fd.read_task is not None  # loads the package `fixture_design.design`
+    spots = box(6, 1)
+    assert fd.design(task(spots), Fake(spots)).layout is not None

@@ -114,9 +114,9 @@ def fewest_by_brute_force(corners: Points, count: int, force: tuple[float, ...])
     best = np.inf
     for locators in combinations(range(len(rows)), 3):
         away = spots.normals[list(locators)]
-        angles = np.linspace(0, 2 * np.pi, 721)
-        ways = np.column_stack([np.cos(angles), np.sin(angles)])
-        if abs(np.linalg.det(rows[list(locators)])) < 1e-6 or not (away @ ways.T < -1e-9).all(axis=0).any():
+        across = np.column_stack([-away[:, 1], away[:, 0]])
+        ways = np.vstack([across, -across, -away])  # it may slide along them
+        if abs(np.linalg.det(rows[list(locators)])) < 1e-6 or not (away @ ways.T <= 1e-9).all(axis=0).any():
             continue
         for clamps in combinations(sorted({*range(len(rows))} - {*locators}), count):
             if np.linalg.matrix_rank(rows[[*locators, *clamps]]) == 3 and _closes(rows[[*locators, *clamps]]):

@@ -40,9 +40,17 @@ def holds(spots: Spots, locators: tuple[int, ...], clamps: tuple[int, ...], *, s
     rows = candidates(spots).rows[:, 0]
     if len(locators) < rows.shape[1] or np.linalg.matrix_rank(rows[list(locators)], 1e-7) < rows.shape[1]:
         return False
-    away = np.ascontiguousarray((spots.normals if straight else rows)[list(locators)])
-    tests = closure_tests(away, np.array([0, len(away)]), np.arange(len(away)))
-    return tests.leaves[0] == 1 and closure_test(rows[[*locators, *clamps]]).closes == 1
+    if straight:  # it may slide along them
+        normals = spots.normals[list(locators)]
+        across = np.column_stack([-normals[:, 1], normals[:, 0]])
+        ways = np.vstack([across, -across, -normals])
+        leaves = bool((normals @ ways.T <= 1e-9).all(axis=0).any())
+    else:
+        tests = closure_tests(
+            np.ascontiguousarray(rows[list(locators)]), np.array([0, len(locators)]), np.arange(len(locators))
+        )
+        leaves = tests.leaves[0] == 1
+    return leaves and closure_test(rows[[*locators, *clamps]]).closes == 1
 
 
 def fewest(spots: Spots, elements: list[Element], most: int, *, straight: bool) -> int:
