@@ -111,8 +111,8 @@ def _not_yet_no(found: DesignResult, left_out: int) -> DesignResult:
     if found.satisfied is not Answer.NO:
         return found
     reason = (
-        f"{found.reason}; {left_out} more, whose normals are known less well, were not looked at (`part: {{faceted: true}}` "
-        "says that every facet is meant as it is)"
+        f"{found.reason}; {left_out} more, whose normals are known less well, were not looked at "
+        "(`part: {faceted: true}` says that every facet is meant as it is)"
     )
     return replace(found, satisfied=Answer.UNDECIDED, reason=reason)
 

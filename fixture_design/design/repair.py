@@ -23,8 +23,10 @@ from fixture_design.design.fitting import fitting, standing
 from fixture_design.design.found import Found
 from fixture_design.design.locating import exchanged
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty
-from fixture_design.design.preloads import duties_of, preloaded
+from fixture_design.design.preloads import duties_of
+from fixture_design.design.pressing import pressed_clamps
 from fixture_design.design.problem import Problem
+from fixture_design.design.raising import fewest_raised
 from fixture_design.design.regions import ways_out
 from fixture_design.design.result import ChangeBound, DesignResult
 from fixture_design.design.search import search
@@ -235,7 +237,14 @@ def _best_places(problem: Problem, locators: Indices, clamps: Indices, pool: Ind
         coming, _ = held_best(
             problem.closing_rows, others, coming, free, problem.candidates.places, standing=problem.standing
         )
-    return locators, np.concatenate([np.setdiff1d(clamps, problem.new), coming])
+    old = np.setdiff1d(clamps, problem.new)
+    if problem.pushing is not None and len(coming):
+        pressed = pressed_clamps(
+            replace(problem, spare=tuple(old.tolist())), problem.pushing, locators, np.concatenate([old, coming])
+        )
+        if np.isfinite(pressed.total) and len(pressed.clamps) == len(clamps):
+            coming = np.setdiff1d(pressed.clamps, old)
+    return locators, np.concatenate([old, coming])
 
 
 def _drawn_up(
@@ -248,10 +257,11 @@ def _drawn_up(
     if verdict.satisfied is not Answer.YES and problem.pushing is not None:
         ordered = [i for e in after.elements if e.role == "clamp" for i in [index_of(problem, e, clamps)]]
         found = Found(locators, np.array(ordered, dtype=np.int64), None, 0.0, 0.0)
-        pushed, again = preloaded(ways, problem, found, after)
-        if again.satisfied is Answer.YES:
-            preloads = list(raised(after, pushed))
-            after, verdict, steps = pushed, again, [*steps, *preloads]
+        coming = [step.element for step in steps if step.action in ("added", "moved")]
+        pushed = fewest_raised(ways, problem, found, after, coming)
+        if pushed is not None:
+            preloads = [step for step in raised(after, pushed[0]) if step.element not in coming]
+            (after, verdict), steps = pushed, [*steps, *preloads]
     satisfied = Answer.YES if verdict.satisfied is None else verdict.satisfied
     reason = None if satisfied is Answer.YES else f"what was found does not verify: {failing(verdict)}"
     return DesignResult(
