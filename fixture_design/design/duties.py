@@ -23,7 +23,9 @@ class Duties:
             where it is to press the locators.
         smooth: which of them are to be balanced without friction, shape (w,).
         pressed: which of them leave every locator pressed, shape (w,).
-        low, high: what each candidate may push with as a clamp, shape (n,) [N].
+        low, high: what each candidate may push with as a clamp, shape (n,) [N]; inf without a limit.
+        floor: what limits say it pushes with at least; low may be more where clamps are to press the part, shape (n,).
+        pushes: which of them push with a preload where they are no locators, shape (n,); the others react.
         required: whether a layout that cannot balance them is none.
     """
 
@@ -32,6 +34,8 @@ class Duties:
     pressed: Mask
     low: Weights
     high: Weights
+    floor: Weights
+    pushes: Mask
     required: bool = False
 
     @classmethod
@@ -40,7 +44,8 @@ class Duties:
         weight: Vector,
         loads: Sequence[Vector],
         scale: Scale,
-        limits: tuple[Weights, Weights],
+        limits: tuple[Weights, Weights, Weights],
+        pushes: Mask,
         *,
         seated: bool,
         required: bool = False,
@@ -49,13 +54,14 @@ class Duties:
 
         Args:
             loads: at least one, be it of nothing.
+            limits: low, high and floor.
             seated: whether the clamps, with the weight alone, are to leave every locator pressed, without friction.
         """
         wrenches = [weight + load for load in loads]
         rows = np.array([scaled(wrench, scale) for wrench in ([weight, *wrenches] if seated else wrenches)])
         kept = _far_apart(rows)
         alone = np.array([seated and row == 0 for row in kept])
-        return cls(rows[kept], alone, alone, *limits, required)
+        return cls(rows[kept], alone, alone, *limits, pushes, required)
 
 
 def scaled(wrench: Vector, scale: Scale) -> Vector:

@@ -230,11 +230,11 @@ def _drawn_up(
     after, steps = changed(asked, problem, locators, clamps)
     verdict = ways.verify(after)
     if verdict.satisfied is not Answer.YES and problem.pushing is not None:
-        ordered = [i for e in after.elements if e.role == "clamp" for i in [index_of(problem, e, clamps)]]
-        found = Found(locators, np.array(ordered, dtype=np.int64), None, 0.0, 0.0)
-        pushed, again = preloaded(ways, problem, found, after)
+        names = {index_of(problem, e, clamps): e.name for e in after.elements if e.role == "clamp"}
+        found = Found(locators, np.array([*names, *problem.clamps], dtype=np.int64), None, 0.0, 0.0)
+        pushed, again = preloaded(ways, problem, found, after, names)
         if again.satisfied is Answer.YES:
-            preloads = list(raised(after, pushed))
+            preloads = list(raised(asked, pushed))
             after, verdict, steps = pushed, again, [*steps, *preloads]
     satisfied = Answer.YES if verdict.satisfied is None else verdict.satisfied
     reason = None if satisfied is Answer.YES else "it locates, lets out and closes, and something else does not hold"

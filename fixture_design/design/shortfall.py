@@ -36,12 +36,14 @@ def refused(task: Task, found: Found) -> bool:
     return many_locators or (limits.clamps is not None and len(found.clamps) > limits.clamps)
 
 
-def _not_held(outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
-    """No clamps hold the loads within the limits of their preload."""
+def _not_held(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
+    """No clamps hold the loads within the limits of their preload, where there are any."""
+    limited = problem.duties is not None and bool(np.isfinite(problem.duties.high[problem.duties.pushes]).any())
+    within = " within the limits of the preload" if limited else ", whatever the clamps push with"
     if outcome.best_preload == np.inf and outcome.complete:
-        reason = "no layout among these candidates holds the loads within the limits of the preload"
+        reason = f"no layout among these candidates holds the loads{within}"
         return DesignResult(Answer.NO, None, steps=start.steps, bound=bound, reason=reason)
-    reason = "no layout was found that holds the loads within the limits of the preload"
+    reason = f"no layout was found that holds the loads{within}"
     return DesignResult(Answer.UNDECIDED, None, steps=start.steps, bound=bound, reason=reason)
 
 
@@ -49,7 +51,7 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     """Why there is none, and whether that is proven."""
     limits, steps = problem.limits, start.steps
     if outcome.found is not None and not outcome.found.holds:
-        return _not_held(outcome, bound, start)
+        return _not_held(problem, outcome, bound, start)
     if bound is None:
         reason = "no straight way out leaves enough places for locators that determine the part"
         answer = Answer.NO if outcome.complete else Answer.UNDECIDED
