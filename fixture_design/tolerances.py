@@ -201,3 +201,18 @@ APART = 1e-6
 #: Singular values of unit gradients below this are zeros: the contact equations depend on each other [-]. They come
 #: from solved configurations, which at a double root are known to the square root of `SOLVED` only.
 DEPENDENT = 1e-5
+
+#: Design presses every locator with this part of what all clamps push together, where the part is to sit [-]: far above
+#: the ties of verdicts, and small enough to ask for hardly more preload.
+PRESSED = 1e-2
+
+#: A clamp that is to press the part against its locators pushes with this at least, where no limits say so [N]: clearly
+#: more than nothing on a bench, far less than any clamp can do. No bound relies on it.
+LEAST_PUSH = 1.0
+
+#: How much more than the least preloads design tries, one after the other [-]: the least is where something gives way,
+#: so that a verdict is a tie there; pyramids in friction cones take a few parts in a hundred, seats more.
+MORE_PUSH = (1e-3, 0.05, 0.3)
+
+#: Preloads of a design hold the loads this much larger, too, where they can [-]: the least hold them and no more.
+RESERVE = 0.05

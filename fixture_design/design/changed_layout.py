@@ -89,8 +89,11 @@ def _step(
 
 
 def raised(before: Layout, after: Layout) -> Iterator[Step]:
-    """A step for each preload that is another one."""
-    old = {element.name: element.preload for element in before.elements}
+    """A step for each clamp that stays where it was and has another preload; one that comes or moves brings its own."""
+    old = {element.name: element for element in before.elements}
     for element in after.elements:
-        if element.role == "clamp" and element.preload != old.get(element.name):
+        was = old.get(element.name)
+        if was is None or element.role != "clamp" or not np.array_equal(was.at, element.at):
+            continue
+        if element.preload != was.preload:
             yield Step("preloaded", element.name, "loads", preload=element.preload)

@@ -297,7 +297,7 @@ def _drawn_up(
     names = named(problem.candidates, found.locators, found.clamps, taken)
     layout = layout_of(task, problem.candidates, found.locators, found.clamps, names, plan.require, plan.friction)
     try:
-        layout, verdict = preloaded(ways, problem, found, layout)
+        layout, verdict = preloaded(ways, problem, found, layout, names)
     except GeometryError as cause:
         useless = _useless(task, ways, problem, found)
         if not useless.any():

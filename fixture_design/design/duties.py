@@ -23,7 +23,10 @@ class Duties:
             where it is to press the locators.
         smooth: which of them are to be balanced without friction, shape (w,).
         pressed: which of them leave every locator pressed, shape (w,).
-        low, high: what each candidate may push with as a clamp, shape (n,) [N].
+        low, high: what each candidate may push with as a clamp, shape (n,) [N]; inf without a limit.
+        floor: what limits say it pushes with at least; low may be more where clamps are to press the part, shape (n,).
+        pushes: which of them push with a preload where they are no locators, shape (n,); the others react.
+        weight: of the part alone, as the wrenches are, shape (d,).
         required: whether a layout that cannot balance them is none.
     """
 
@@ -32,6 +35,9 @@ class Duties:
     pressed: Mask
     low: Weights
     high: Weights
+    floor: Weights
+    pushes: Mask
+    weight: Vector
     required: bool = False
 
     @classmethod
@@ -40,7 +46,8 @@ class Duties:
         weight: Vector,
         loads: Sequence[Vector],
         scale: Scale,
-        limits: tuple[Weights, Weights],
+        limits: tuple[Weights, Weights, Weights],
+        pushes: Mask,
         *,
         seated: bool,
         required: bool = False,
@@ -49,18 +56,32 @@ class Duties:
 
         Args:
             loads: at least one, be it of nothing.
+            limits: low, high and floor.
             seated: whether the clamps, with the weight alone, are to leave every locator pressed, without friction.
         """
         wrenches = [weight + load for load in loads]
         rows = np.array([scaled(wrench, scale) for wrench in ([weight, *wrenches] if seated else wrenches)])
         kept = _far_apart(rows)
         alone = np.array([seated and row == 0 for row in kept])
-        return cls(rows[kept], alone, alone, *limits, required)
+        return cls(rows[kept], alone, alone, *limits, pushes, scaled(weight, scale), required)
 
     def and_more(self, count: int) -> Duties:
         """The same for so many more candidates, which are no clamps."""
         more = np.zeros(count)
-        return replace(self, low=np.append(self.low, more), high=np.append(self.high, more))
+        low, high, floor = (np.append(values, more) for values in (self.low, self.high, self.floor))
+        return replace(self, low=low, high=high, floor=floor, pushes=np.append(self.pushes, more > 0))
+
+    def with_reserve(self, reserve: float) -> Duties:
+        """The same with every load (1 + reserve) times as large besides, so that the preloads are at no limit."""
+        loads = self.wrenches[~self.pressed]
+        larger = loads + reserve * (loads - self.weight)
+        more = np.zeros(len(larger), dtype=bool)
+        return replace(
+            self,
+            wrenches=np.vstack([self.wrenches, larger]),
+            smooth=np.append(self.smooth, more),
+            pressed=np.append(self.pressed, more),
+        )
 
 
 def scaled(wrench: Vector, scale: Scale) -> Vector:

@@ -8,7 +8,7 @@ from itertools import islice, permutations
 
 import numpy as np
 
-from fixture_design.arrays import Vector, Weights
+from fixture_design.arrays import Indices, Mask, Weights
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import empty_layout
 from fixture_design.design.duties import Duties
@@ -19,15 +19,13 @@ from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import UnsupportedError
 from fixture_design.layout import Answer, Element, Layout, LoadsHeld, Verdict
+from fixture_design.tolerances import LEAST_PUSH, MORE_PUSH, RESERVE
 
 #: Requirements that are about forces.
 _ABOUT_FORCES = {"holds_loads", "seated"}
-#: Without limits a clamp may push with so many times what acts on the part [-].
-_TIMES = 1e3
-#: A clamp that is to press the part against its locators pushes with this at least, where nothing else asks for it [N].
-_LEAST_PUSH = 1.0
-#: More than the least, where the least is at the limit of what holds [-].
-_MORE = (1e-3, 0.05, 0.3)
+#: The verdict's own program looks for preloads up to so many times what the search found and what acts on the part [-],
+#: where there are no limits.
+_GENEROUS = 10.0
 #: Orders in which clamps may close that are looked at.
 _MOST_ORDERS = 720
 #: Orders that are verified one after the other.
@@ -47,41 +45,55 @@ def duties_of(task: Task, plan: Plan, ways: Ways, candidates: Candidates) -> Dut
     if isinstance(wrenches, str):
         raise UnsupportedError(wrenches, source=task.source, expected="`mass` of the part, or no gravity")
     weight, loads = wrenches
-    limits = _limits(task, candidates, _TIMES * max(_size(weight + load) for load in [0 * weight, *loads]), asked)
-    return Duties.of(weight, loads, candidates.scale, limits, seated="seated" in asked, required=bool(asked))
+    return Duties.of(
+        weight, loads, candidates.scale, _limits(task, candidates, asked), _pushing(task, candidates),
+        seated="seated" in asked, required=bool(asked),
+    )  # fmt: skip
 
 
-def _size(wrench: Vector) -> float:
-    return float(np.linalg.norm(wrench))
+def _pushing(task: Task, candidates: Candidates) -> Mask:
+    """Which candidates push with a preload: new ones, and elements of role clamp.
+
+    Supports, fingers and bodies react, and so do contacts given as clamps: nobody says what they push with.
+    """
+    clamps = {e.name for e in task.start.elements if e.role == "clamp"} if task.start is not None else set()
+    return np.array([element is None or element.name in clamps for element in candidates.elements], dtype=bool)
 
 
-def _limits(task: Task, candidates: Candidates, most: float, asked: set[str]) -> tuple[Weights, Weights]:
-    """Least and largest push of every candidate: of the task, but for elements that have their own."""
-    low, high = task.limits.preload or (_LEAST_PUSH if "seated" in asked else 0.0, max(most, _TIMES * _LEAST_PUSH))
+def _limits(task: Task, candidates: Candidates, asked: set[str]) -> tuple[Weights, Weights, Weights]:
+    """Least and largest push of every candidate, of the task but for elements that have their own; and the least that
+    these limits ask for.
+    """
+    low, high = task.limits.preload or (0.0, np.inf)
     lows, highs = np.full(len(candidates), low), np.full(len(candidates), high)
+    limited = np.full(len(candidates), task.limits.preload is not None)
     for index, element in enumerate(candidates.elements):
         own = None if element is None else _own_limits(element)
         if own is not None:
-            lows[index], highs[index] = own
-    return lows, highs
+            lows[index], highs[index], limited[index] = *own, True
+    return np.where(limited | ("seated" not in asked), lows, LEAST_PUSH), highs, lows
 
 
 def _own_limits(element: Element) -> tuple[float, float] | None:
-    """What an element of the start may push with: within its limits, or else with its preload."""
-    if element.limits is not None:
+    """What an element of the start may push with: within its limits, or else, and if it is fixed, with its preload."""
+    if element.limits is not None and not (element.fixed and element.preload is not None):
         return element.limits
     return None if element.preload is None else (element.preload, element.preload)
 
 
-def preloaded(ways: Ways, problem: Problem, found: Found, layout: Layout) -> tuple[Layout, Verdict]:
+def preloaded(
+    ways: Ways, problem: Problem, found: Found, layout: Layout, names: Mapping[int, str]
+) -> tuple[Layout, Verdict]:
     """The layout with the least preloads that verify, where preloads are asked for, and its verdict; with the last ones
     tried where none do.
+
+    Args:
+        names: of the layout's elements, by candidate.
     """
-    clamps = [element for element in layout.elements if element.role == "clamp"]
-    if problem.pushing is None or not clamps:
+    if problem.duties is None or not problem.duties.pushes[found.clamps].any():
         return layout, ways.verify(layout)
     tried: tuple[Layout, Verdict] | None = None
-    for preloads in _preloads(ways, problem, found, layout, clamps):
+    for preloads in _preloads(ways, problem, found, layout, names):
         pushing = _with(layout, preloads)
         verdict = ways.verify(pushing)
         tried = (pushing, verdict)
@@ -92,28 +104,37 @@ def preloaded(ways: Ways, problem: Problem, found: Found, layout: Layout) -> tup
 
 
 def _preloads(
-    ways: Ways, problem: Problem, found: Found, layout: Layout, clamps: list[Element]
+    ways: Ways, problem: Problem, found: Found, layout: Layout, by_candidate: Mapping[int, str]
 ) -> Iterator[Mapping[str, float]]:
-    """Preloads to try, in the order of closing: the least of the verdict's own program, then the search's, with more
-    and more to spare.
+    """Preloads to try, in the order of closing: those that hold the loads with a reserve, the least of the verdict's own
+    program, and the search's with more and more to spare.
     """
     assert problem.pushing is not None
-    duties, names = problem.pushing.duties, [clamp.name for clamp in clamps]
-    least = problem.pushing.least(found.locators, found.clamps).each
-    limits = np.column_stack([duties.low[found.clamps], duties.high[found.clamps]])
-    orders = _orders(problem, found, least)
+    duties = problem.pushing.duties
+    pushing = duties.pushes[found.clamps]
+    clamps = found.clamps[pushing]
+    names = [by_candidate[index] for index in clamps.tolist()]
+    least = problem.pushing.least(found.locators, found.clamps).each[pushing]
+    limits = np.column_stack([duties.low[clamps], duties.high[clamps]])
+    orders = _orders(problem, found.locators, clamps, least)
 
     def pushes(values: Weights, order: tuple[int, ...]) -> dict[str, float]:
-        return {names[k]: float(np.clip(values[k], *limits[k])) for k in order}
+        # 0.0 is added since -0.0 is none
+        return {names[k]: float(np.clip(values[k], *limits[k])) + 0.0 for k in order}
 
     if any("holds_loads" in words for words in layout.require.values()):
-        some = {name: (float(low), float(high)) for name, (low, high) in zip(names, limits, strict=True)}
+        roomy = replace(problem.pushing, duties=duties.with_reserve(RESERVE)).least(found.locators, found.clamps)
+        if np.isfinite(roomy.total):
+            yield from (pushes(roomy.each[pushing], order) for order in orders)
+        most = _GENEROUS * max(float(least.sum() + np.abs(duties.wrenches).max()), LEAST_PUSH)
+        high = np.where(np.isfinite(limits[:, 1]), limits[:, 1], np.maximum(most, limits[:, 0]))
+        some = {name: (float(low), float(top)) for name, low, top in zip(names, limits[:, 0], high, strict=True)}
         verdict = ways.verify(_with(layout, pushes(least, orders[0]), some))
         held = verdict.groups["all"].findings.get("holds_loads")
         if held is not None and isinstance(held.use, LoadsHeld) and held.use.least_preloads is not None:
-            enough = held.use.least_preloads
-            yield from ({names[k]: enough.get(names[k], 0.0) for k in order} for order in orders)
-    for more in (0.0, *_MORE):
+            enough = np.array([held.use.least_preloads.get(name, 0.0) for name in names])
+            yield from (pushes(enough, order) for order in orders)
+    for more in (0.0, *MORE_PUSH):
         yield from (pushes(least * (1 + more), order) for order in orders)
 
 
@@ -130,17 +151,17 @@ def _with(
     return replace(layout, elements=(*others, *pushing))
 
 
-def _orders(problem: Problem, found: Found, pushes: Weights) -> list[tuple[int, ...]]:
+def _orders(problem: Problem, locators: Indices, clamps: Indices, pushes: Weights) -> list[tuple[int, ...]]:
     """Orders in which the clamps may close, first those in which the locators are pressed most at every step."""
     assert problem.pushing is not None
-    duties, same = problem.pushing.duties, tuple(range(len(found.clamps)))
-    rows = problem.pushing.smooth[found.locators].reshape(-1, problem.candidates.dimension)
+    duties, same = problem.pushing.duties, tuple(range(len(clamps)))
+    rows = problem.pushing.smooth[locators].reshape(-1, problem.candidates.dimension)
     if not duties.pressed.any() or rows.shape[0] != rows.shape[1]:
         return [same]
     weight = np.linalg.lstsq(rows.T, duties.wrenches[0], rcond=None)[0]
     against = np.array([
         np.linalg.lstsq(rows.T, problem.pushing.smooth[clamp].sum(axis=0) * push, rcond=None)[0]
-        for clamp, push in zip(found.clamps.tolist(), pushes.tolist(), strict=True)
+        for clamp, push in zip(clamps.tolist(), pushes.tolist(), strict=True)
     ])  # fmt: skip
 
     def least_pressed(order: tuple[int, ...]) -> float:
@@ -154,4 +175,4 @@ def found_preload(problem: Problem, layout: Layout) -> float | None:
     """What a layout's clamps push with in all [N]; None where nobody asks."""
     if problem.duties is None:
         return None
-    return sum((element.preload or 0.0) for element in layout.elements if element.role == "clamp")
+    return sum(((element.preload or 0.0) for element in layout.elements if element.role == "clamp"), start=0.0)

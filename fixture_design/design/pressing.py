@@ -29,7 +29,7 @@ _MOST_MORE = 3
 def least_of_all(problem: Problem, program: Program, locators: Indices, clamps: Indices) -> tuple[Indices, Pushes]:
     """Clamps that together push as little as any of the candidates could with these locators, and their pushes.
 
-    Some of them push with nothing. The total is a lower bound for any clamps of any number.
+    Some of them push with nothing. All of them push with what the duties say at least: `least_here` is the bound.
     """
     chosen = np.array(clamps, dtype=np.int64)
     pool = np.setdiff1d(problem.clampable, locators)
@@ -38,7 +38,7 @@ def least_of_all(problem: Problem, program: Program, locators: Indices, clamps: 
         outside = np.setdiff1d(pool, chosen)
         worth = program.worth(pushes.duals, outside)
         best = outside[np.argsort(-worth)[:_AT_ONCE]]
-        best = best[program.worth(pushes.duals, best) > 1 + DEFAULT.near]
+        best = best[program.worth(pushes.duals, best) > pushes.price + DEFAULT.near]
         if not len(best):
             break
         chosen = np.concatenate([chosen, best])
@@ -49,15 +49,31 @@ def least_bound(problem: Problem, program: Program, pool: Indices) -> tuple[floa
     """No locators of ``pool``, with clamps anywhere, need less preload in all [N], None where that is not known; and
     the locators that would react then, most first.
     """
-    locators, clamps = np.array(problem.locators, dtype=np.int64), np.array(problem.clamps, dtype=np.int64)
-    low = np.where(np.isin(np.arange(len(problem.candidates)), clamps), program.duties.low, 0.0)
+    return _bounded(problem, program, np.array(problem.locators, dtype=np.int64), pool, problem.clampable)
+
+
+def least_here(problem: Problem, program: Program, locators: Indices) -> float | None:
+    """With these locators no clamps, of any number and anywhere, need less preload in all [N], None where that is not
+    known.
+    """
+    clampable = np.setdiff1d(problem.clampable, locators)
+    return _bounded(problem, program, locators, clampable[:0], clampable)[0]
+
+
+def _bounded(
+    problem: Problem, program: Program, locators: Indices, pool: Indices, clampable: Indices
+) -> tuple[float | None, Indices]:
+    """The least that any of these locators and clamps need, with those that stay; and the locators that react, most
+    first. Only clamps that stay have to push, and no locator has to be pressed.
+    """
+    clamps = np.array(problem.clamps, dtype=np.int64)
+    low = np.where(np.isin(np.arange(len(problem.candidates)), clamps), program.duties.floor, 0.0)
     program = replace(program, duties=replace(program.duties, low=low, pressed=program.duties.pressed & False))
     pool = np.setdiff1d(pool, locators)
     for _ in range(_MOST_ROUNDS):
         pushes = program.least(locators, clamps)
-        more = _worth_it(program.use(pushes.duals, pool), pool, 0.0)
-        some = _worth_it(program.worth(pushes.duals, problem.clampable), problem.clampable, 1.0)
-        more, some = np.setdiff1d(more, locators), np.setdiff1d(some, clamps)
+        more = _worth_it(program.use(pushes.duals, pool), pool, 0.0, locators)
+        some = _worth_it(program.worth(pushes.duals, clampable), clampable, pushes.price, clamps)
         if not len(more) and not len(some):
             reacting = np.argsort(-pushes.reactions)[: int((pushes.reactions > 0).sum())]
             return pushes.total, locators[reacting]
@@ -65,7 +81,9 @@ def least_bound(problem: Problem, program: Program, pool: Indices) -> tuple[floa
     return None, locators
 
 
-def _worth_it(values: np.ndarray, pool: Indices, least: float) -> Indices:
+def _worth_it(values: np.ndarray, pool: Indices, least: float, there: Indices) -> Indices:
+    """The few best of a pool that are worth more than the least, and not there yet."""
+    values, pool = values[~np.isin(pool, there)], pool[~np.isin(pool, there)]
     best = np.argsort(-values)[:_AT_ONCE]
     return pool[best[values[best] > least + DEFAULT.near]]
 
@@ -208,7 +226,7 @@ def _exchanged_once(
                 continue
             if problem.closes is not None and _margin(problem, moved, pressed.clamps) < least_margin:
                 continue
-            if program.least(moved, pressed.clamps).cost < pushes.cost * (1 - _BETTER):
+            if program.least(moved, pressed.clamps).less_than(pushes, _BETTER):
                 return moved
     return None
 

@@ -21,15 +21,16 @@ _ANY = (0.0, np.inf)
 
 
 def fewest_raised(
-    ways: Ways, problem: Problem, found: Found, layout: Layout, coming: Sequence[str]
+    ways: Ways, problem: Problem, found: Found, layout: Layout, names: Mapping[int, str], coming: Sequence[str]
 ) -> tuple[Layout, Verdict] | None:
     """The layout with preloads that verify, changed on as few clamps as can be among sets of them; None without any.
 
     Args:
+        names: of the clamps that may push, by candidate.
         coming: clamps that were not there before; what they push with is no change of its own.
     """
     clamps = {element.name: element for element in layout.elements if element.role == "clamp"}
-    numbers = dict(zip(clamps, found.clamps.tolist(), strict=True))
+    numbers = {name: index for index, name in names.items()}
     free = [name for name, clamp in clamps.items() if name in coming or clamp.preload is None]
     others = [name for name, clamp in clamps.items() if name not in free and not clamp.fixed]
     kept = {name: clamp.preload for name, clamp in clamps.items() if name not in free and clamp.preload is not None}
@@ -43,7 +44,7 @@ def fewest_raised(
         )
         assert trial.pushing is not None
         if np.isfinite(trial.pushing.least(found.locators, found.clamps).total):
-            after, verdict = preloaded(ways, trial, found, layout)
+            after, verdict = preloaded(ways, trial, found, layout, names)
             if verdict.satisfied is Answer.YES:
                 return after, verdict
     return None

@@ -255,13 +255,12 @@ def _drawn_up(
     after, steps = changed(asked, problem, locators, clamps)
     verdict = ways.verify(after)
     if verdict.satisfied is not Answer.YES and problem.pushing is not None:
-        ordered = [i for e in after.elements if e.role == "clamp" for i in [index_of(problem, e, clamps)]]
-        found = Found(locators, np.array(ordered, dtype=np.int64), None, 0.0, 0.0)
+        names = {index_of(problem, e, clamps): e.name for e in after.elements if e.role == "clamp"}
+        found = Found(locators, np.array([*names, *problem.clamps], dtype=np.int64), None, 0.0, 0.0)
         coming = [step.element for step in steps if step.action in ("added", "moved")]
-        pushed = fewest_raised(ways, problem, found, after, coming)
+        pushed = fewest_raised(ways, problem, found, after, names, coming)
         if pushed is not None:
-            preloads = [step for step in raised(after, pushed[0]) if step.element not in coming]
-            (after, verdict), steps = pushed, [*steps, *preloads]
+            (after, verdict), steps = pushed, [*steps, *raised(asked, pushed[0])]
     satisfied = Answer.YES if verdict.satisfied is None else verdict.satisfied
     reason = None if satisfied is Answer.YES else f"what was found does not verify: {failing(verdict)}"
     return DesignResult(

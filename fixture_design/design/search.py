@@ -20,7 +20,7 @@ from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, independent
 from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
-from fixture_design.design.pressing import least_bound, least_of_all, pressed_clamps, pressed_together
+from fixture_design.design.pressing import least_bound, least_here, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
 from fixture_design.design.ways import Progress
@@ -63,7 +63,9 @@ def _with_bounds(
 ) -> Outcome:
     """With bounds over all regions that might do with as few clamps; none of accuracy where rows are redundant."""
     left = [region for region in regions if region.bound <= len(best.clamps)]
-    preload, here = _best_preload(problem, left), _best_preload_here(problem, best)
+    preload, here = None, None
+    if np.isfinite(best.preload) or not best.holds:  # what balances nothing is not compared with what does
+        preload, here = _best_preload(problem, left), _best_preload_here(problem, best)
     redundant = redundancy(problem, best.locators) > 0
     return Outcome(best, least, complete, None if redundant else _best_accuracy(problem, left), preload, here)
 
@@ -259,9 +261,7 @@ def _best_accuracy(problem: Problem, regions: Sequence[Region]) -> float:
 
 def _best_preload_here(problem: Problem, best: Found) -> float | None:
     """The same for clamps anywhere against the locators that were found."""
-    if problem.pushing_bound is None:
-        return None
-    return least_of_all(problem, problem.pushing_bound, best.locators, best.clamps)[1].total
+    return None if problem.pushing_bound is None else least_here(problem, problem.pushing_bound, best.locators)
 
 
 def _best_preload(problem: Problem, regions: Sequence[Region]) -> float | None:

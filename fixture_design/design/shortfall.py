@@ -49,12 +49,14 @@ def failing(verdict: Verdict) -> str:
     return "; ".join(told)
 
 
-def _not_held(outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
-    """No clamps hold the loads within the limits of their preload."""
+def _not_held(problem: Problem, outcome: Outcome, bound: Bound | None, start: Start) -> DesignResult:
+    """No clamps hold the loads within the limits of their preload, where there are any."""
+    limited = problem.duties is not None and bool(np.isfinite(problem.duties.high[problem.duties.pushes]).any())
+    within = " within the limits of the preload" if limited else ", whatever the clamps push with"
     if outcome.best_preload == np.inf and outcome.complete:
-        reason = "no layout among these candidates holds the loads within the limits of the preload"
+        reason = f"no layout among these candidates holds the loads{within}"
         return DesignResult(Answer.NO, None, steps=start.steps, bound=bound, reason=reason)
-    reason = "no layout was found that holds the loads within the limits of the preload"
+    reason = f"no layout was found that holds the loads{within}"
     return DesignResult(Answer.UNDECIDED, None, steps=start.steps, bound=bound, reason=reason)
 
 
@@ -67,7 +69,7 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     limits, steps = problem.limits, start.steps
     complete = outcome.complete and problem.determines
     if outcome.found is not None and not outcome.found.holds:
-        return _not_held(outcome, bound, start)
+        return _not_held(problem, outcome, bound, start)
     if bound is None:
         reason = "no straight way out leaves enough places for locators that determine the part"
         if complete and problem.leaves and problem.opens:
