@@ -106,8 +106,8 @@ def preloaded(
 def _preloads(
     ways: Ways, problem: Problem, found: Found, layout: Layout, by_candidate: Mapping[int, str]
 ) -> Iterator[Mapping[str, float]]:
-    """Preloads to try, in the order of closing: those that hold the loads with a reserve, the least of the verdict's own
-    program, and the search's with more and more to spare.
+    """Preloads to try, in the order of closing: those that hold the loads with a reserve, the least of the verdict's
+    own program, and the search's with more and more to spare.
     """
     assert problem.pushing is not None
     duties = problem.pushing.duties

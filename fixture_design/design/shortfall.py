@@ -84,6 +84,8 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
                 certain = least_clamps_sliding(problem, seed, most + 1) > most
             answer = Answer.NO if certain else Answer.UNDECIDED
             reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
+            if not certain and problem.leaves and problem.opens:
+                reason += ", where some direction is to leave all locators at once"
             return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
     needed = f"{bound.locators} locators and {bound.clamps} clamps"
     needed = needed if outcome.least_elements is None else f"{bound.elements} elements"

@@ -16,7 +16,7 @@ from fixture_design.verification import check
 from tests.design.fakes import candidates, polygon
 
 RECTANGLE = np.array([[0.0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]])
-REQUIRE = {"locators": ("deterministic", "loadable"), "all": ("form_closure", "holds_loads")}
+REQUIRE = {"locators": ("deterministic", "strongly_accessible", "loadable"), "all": ("form_closure", "holds_loads")}
 
 
 def plate(corners: Points = RECTANGLE, **keys: object) -> Task:
@@ -116,9 +116,9 @@ def fewest_by_brute_force(corners: Points, count: int, force: tuple[float, ...])
     best = np.inf
     for locators in combinations(range(len(rows)), 3):
         away = spots.normals[list(locators)]
-        across = np.column_stack([-away[:, 1], away[:, 0]])
-        ways = np.vstack([across, -across, -away])  # it may slide along them
-        if abs(np.linalg.det(rows[list(locators)])) < 1e-6 or not (away @ ways.T <= 1e-9).all(axis=0).any():
+        angles = np.linspace(0, 2 * np.pi, 721)
+        ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        if abs(np.linalg.det(rows[list(locators)])) < 1e-6 or not (away @ ways.T < -1e-9).all(axis=0).any():
             continue
         for clamps in combinations(sorted({*range(len(rows))} - {*locators}), count):
             if np.linalg.matrix_rank(rows[[*locators, *clamps]]) == 3 and _closes(rows[[*locators, *clamps]]):
@@ -160,7 +160,7 @@ def test_preloads_keep_within_the_limits_and_hold_with_more_clamps_or_not_at_all
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_the_part_sits_where_that_is_asked(friction: float) -> None:
-    require = {"locators": ("deterministic", "loadable"), "all": ("seated", "holds_loads")}
+    require = {"locators": ("deterministic", "strongly_accessible", "loadable"), "all": ("seated", "holds_loads")}
     require["all"] = ("force_closure" if friction else "form_closure", *require["all"])
     keys = {"require": require, "friction": friction, "loads": (load((50.0, 20.0)),)}
     result = design(plate(**keys))  # type: ignore[arg-type]
