@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
 import pytest
 
 from fixture_design.arrays import Points
-from fixture_design.design import CandidateRules, DesignResult, Limits, Task, design
+from fixture_design.contacts import Contact, Role
+from fixture_design.design import CandidateRules, DesignResult, Limits, Task, design, pressing, repair
 from fixture_design.design.duties import Duties, scaled
 from fixture_design.design.pushing import Program
-from fixture_design.layout import Answer, Load, Part, Pose
+from fixture_design.layout import Answer, Element, Layout, Load, Part, Pose
 from fixture_design.verification import check
-from tests.design.fakes import candidates, polygon
+from tests.design.fakes import Spots, candidates, polygon
 
 RECTANGLE = np.array([[0.0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]])
 REQUIRE = {"locators": ("deterministic", "strongly_accessible", "loadable"), "all": ("form_closure", "holds_loads")}
@@ -174,3 +176,141 @@ def test_a_moment_is_held_wherever_it_acts(x: float, y: float) -> None:
     result = design(plate(loads=(load((0.0, 80.0), (x, y)),), objective=("fewest", "accuracy", "preload")))
     assert result.best_preload_here is not None
     assert sure(result) >= result.best_preload_here * (1 - 1e-6)
+
+
+#: Points of a plate that are enough to locate and clamp it; few, so that a design takes a moment.
+FEW = np.array([[0.05, 0], [0.15, 0], [0.1, 0], [0.05, 0.1], [0.15, 0.1], [0.1, 0.1], [0, 0.05], [0, 0.03]])
+AWAY = np.array([[0.0, -1]] * 3 + [[0, 1]] * 3 + [[-1, 0]] * 2)
+RUBS = {"locators": ("deterministic", "loadable"), "all": ("force_closure", "holds_loads")}
+
+
+def given(name: str, role: Role, at: tuple[float, float], **keys: object) -> Element:
+    return Element(name, role, np.array(at), **keys)  # type: ignore[arg-type]
+
+
+def start(*elements: Element, contacts: tuple[Contact, ...] = ()) -> Layout:
+    return Layout("start", "planar", plate().part, elements=elements, contacts=contacts)
+
+
+@pytest.mark.parametrize("role", ["support", "finger"])
+def test_what_is_no_clamp_reacts(role: Role) -> None:
+    """It takes the load by itself, so that nothing has to be pushed, by the bounds neither."""
+    there = given("S", role, (0.2, 0.05), fixed=True)
+    result = design(plate(start=start(there), loads=(load((1000.0, 0.0)),), objective=("fewest", "preload")))
+    assert sure(result) == pytest.approx(0.0, abs=1e-3)
+    assert result.best_preload == pytest.approx(0.0, abs=1e-6)
+    assert result.best_preload_here == pytest.approx(0.0, abs=1e-6)
+    assert result.layout is not None
+    assert {e.name for e in result.layout.elements if e.preload is not None} == {
+        e.name for e in result.layout.elements if e.role == "clamp"
+    }
+
+
+def test_a_contact_given_as_clamp_pushes_with_nothing_anybody_knows() -> None:
+    outright = Contact("G", "clamp", np.array([0.2, 0.05]), ((np.array([1.0, 0.0]),),), 0.0)
+    result = design(plate(start=start(contacts=(outright,)), loads=(load((1000.0, 0.0)),)))
+    assert result.satisfied is Answer.UNDECIDED
+    assert result.verdict is not None
+    assert "clamp G has no preload" in (result.verdict.groups["all"].findings["holds_loads"].reason or "")
+
+
+def test_a_reacting_element_is_a_locator_that_need_not_be_pressed() -> None:
+    one = program(RECTANGLE, 4, np.random.default_rng(3).normal(size=(1, 3)))
+    locators, clamps, other = np.array([0, 3, 13]), np.array([5, 9]), 11
+    reacts = np.arange(len(one.smooth)) != other
+    passive = replace(one, duties=replace(one.duties, pushes=reacts))
+    expected = one.least(np.append(locators, other), clamps)
+    found = passive.least(locators, np.append(clamps, other))
+    assert found.total == pytest.approx(expected.total)
+    assert found.each[2] == 0.0
+    assert found.reactions.shape == (3,)
+
+
+@pytest.mark.parametrize(("seed", "low"), [(1, 5.0), (2, 20.0)])
+def test_no_bound_has_every_clamp_push(seed: int, low: float) -> None:
+    rng = np.random.default_rng(seed)
+    corners = RECTANGLE + 0.03 * rng.uniform(-1, 1, (4, 2))
+    rules = CandidateRules(points=polygon(corners, 2).points)
+    force = tuple(30 * rng.normal(size=2))
+    result = design(
+        plate(
+            corners,
+            candidates=rules,
+            loads=(load(force),),
+            limits=Limits(preload=(low, 1e4)),
+            objective=("fewest", "accuracy"),
+        )
+    )
+    found = sure(result)
+    assert result.best_preload is not None
+    assert result.best_preload <= found * (1 + 1e-6)
+    assert result.best_preload_here is not None
+    assert result.best_preload <= result.best_preload_here * (1 + 1e-6)
+    assert result.best_preload_here <= found * (1 + 1e-6)
+
+
+def test_a_bound_that_was_not_reached_is_none() -> None:
+    task = plate(require=RUBS, friction=0.2, candidates=CandidateRules(points=FEW), loads=(load((1000.0, 0.0)),))
+    assert design(task).best_preload_here is not None
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(pressing, "_MOST_ROUNDS", 0)
+        assert design(task).best_preload_here is None
+
+
+@pytest.mark.parametrize("friction", [1e-3, 1e-5])
+def test_little_friction_takes_much_preload(friction: float) -> None:
+    """A clamp on the face across the load's holds it by friction alone: F = 2 mu p, whatever that takes."""
+    some = candidates(Spots(FEW, AWAY, ("face",) * len(FEW)), friction)
+    no, none, ends = np.zeros(1, dtype=bool), np.zeros(len(some)), np.full(len(some), 1e12)
+    duties = Duties(np.array([[1000.0, 0, 0]]), no, no, none, ends, none, np.ones(len(some), dtype=bool))
+    least = Program(some.pushes(rough=True), some.pushes(rough=False), duties).least(np.array([0, 1, 6]), np.array([5]))
+    assert least.total == pytest.approx(1000.0 / (2 * friction), rel=1e-6)
+
+
+@pytest.mark.parametrize("limits", [None, (0.0, 1e12)])
+def test_nothing_but_limits_caps_the_preload(limits: tuple[float, float] | None) -> None:
+    task = plate(
+        require=RUBS, friction=1e-5, candidates=CandidateRules(points=FEW), loads=(load((1000.0, 0.0)),),
+        limits=Limits(preload=limits),
+    )  # fmt: skip
+    assert sure(design(task)) >= 1000.0 / 2e-5
+
+
+def test_what_no_push_holds_is_not_said_to_be_a_matter_of_limits() -> None:
+    sides = FEW[[0, 1, 2, 6, 7]]  # below and on the left: nothing there pushes down or to the left
+    task = plate(
+        require={"locators": ("deterministic", "loadable"), "all": ("holds_loads",)},
+        candidates=CandidateRules(points=sides), loads=(load((100.0, 0.0)),),
+    )  # fmt: skip
+    result = design(task)
+    assert result.satisfied is Answer.NO
+    assert result.reason == "no layout among these candidates holds the loads, whatever the clamps push with"
+
+
+def test_a_clamp_comes_with_its_preload_as_one_change() -> None:
+    elements = [given(f"L{k + 1}", "locator", at) for k, at in enumerate([(0.05, 0.0), (0.15, 0.0), (0.0, 0.05)])]
+    clamp = given("K1", "clamp", (0.2, 0.05), preload=1e5)
+    task = plate(loads=(load((10.0, 0.0)),))
+    asked = Layout("open", "planar", task.part, elements=(*elements, clamp), require=REQUIRE, loads=task.loads)
+    result = repair(asked)
+    assert sure_preloads(result)
+    assert [(step.action, step.element) for step in result.steps] == [("added", "K2")]
+    assert result.changes is not None
+    assert (result.changes.found, result.changes.bound) == (1, 1)
+    weak = replace(asked, elements=(*elements, replace(clamp, preload=None, limits=(0.0, 1e4))))
+    again = repair(weak)
+    assert sure_preloads(again)
+    assert [(step.action, step.element) for step in again.steps] == [("added", "K2"), ("preloaded", "K1")]
+
+
+def sure_preloads(result: DesignResult) -> list[float]:
+    assert result.satisfied is Answer.YES, result.reason
+    assert result.layout is not None
+    return [e.preload for e in result.layout.elements if e.preload is not None]
+
+
+def test_zero_has_no_sign() -> None:
+    result = design(plate(loads=(load((-100.0, -50.0)),), objective=("fewest", "preload")))
+    preloads = sure_preloads(result)
+    assert preloads
+    assert not np.signbit(preloads).any()
