@@ -132,6 +132,9 @@ def _play(board: Any, scene: Scene, story: Story | None) -> None:
 
     animation: Any = MeshcatAnimation(frames_per_second=30.0)
     if story is None or story.animation is None:
+        # what a story before this one has moved stands still, where it is
+        board.SetAnimation(animation)
+        board.SetTransform(f"{ROOT}/part", _transform(scene, Pose.identity(3)))
         return
     path = f"{ROOT}/{story.animation.path}"
     for time, pose in rounds(story.animation):
