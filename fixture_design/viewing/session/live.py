@@ -13,7 +13,7 @@ from fixture_design.errors import InputError
 from fixture_design.layout import Answer, Verdict
 from fixture_design.viewing.drake_meshcat import draw, started
 from fixture_design.viewing.palette import BLACK, MOTION
-from fixture_design.viewing.scene import Arrow, Label, Scene, Solid, Sphere, Story, Thing, scene_of, solid_of
+from fixture_design.viewing.scene import Arrow, Camera, Label, Scene, Solid, Sphere, Story, Thing, scene_of, solid_of
 from fixture_design.viewing.scene.space import lifted
 from fixture_design.viewing.session.lines import Line, element_line, verdict_lines, wrapped
 from fixture_design.viewing.session.panel import Panel, Reading
@@ -51,6 +51,7 @@ class Live:
         actions = [*steering.actions, QUIT]
         self._panel = Panel(self._meshcat, actions, _REACH * size, round_size(_STEP * size), self._flat)
         self._things: tuple[Thing, ...] | None = None
+        self._camera: Camera | None = None
         self._seen: int | None = None
         self._reading: Reading | None = None
         self._shown: tuple[str | None, int, bool] | None = None
@@ -103,9 +104,11 @@ class Live:
         steering = self.steering
         self._seen = steering.version
         told = steering.told if _known(steering.told, steering.verdict) else foremost(steering.verdict)
-        scene = scene_of(steering.layout, steering.verdict, self._solid, tell=set() if told is None else {told})
+        tell = set() if told is None else {told}
+        scene = scene_of(steering.layout, steering.verdict, self._solid, tell, self._camera)
         story = next((each for each in scene.stories if (each.group, each.claim) == told), None)
         self._things = draw(self._meshcat, self._with_mark(scene), story or _nothing(scene), self._things)
+        self._camera = self._camera or scene.camera
         self._show_sliders()
         self._panel.write(self._lines(told))
         self.drawn += 1

@@ -1,4 +1,4 @@
-"""The controls in the browser: sliders for the chosen element, buttons for what can be done, and lines of text.
+"""The controls in the browser: buttons for what can be done, sliders for the chosen element, and lines of text.
 
 Drake's Meshcat has no text beside the drawing, so a line is a button: a click on an answer shows what it rests on. Its
 names are run as code in the page, which is why only `lines.harmless` ones come here.
@@ -25,7 +25,9 @@ class Reading:
 
 
 class Panel:
-    """Sliders, buttons and lines of one Meshcat, in this order from above.
+    """Buttons, sliders and lines of one Meshcat, in this order from above.
+
+    What is added comes last; the buttons are never made anew, so that no click on them is lost.
 
     Args:
         reach, step: of the sliders for u and v [m].
@@ -38,6 +40,8 @@ class Panel:
         self._elements: int | None = None
         self._lines: dict[str, Line] = {}
         self._clicks: dict[str, int] = {}
+        for name in actions:
+            self._board.AddButton(name)
 
     def read(self) -> Reading | None:
         """The sliders; None as long as there is nothing to choose."""
@@ -86,18 +90,16 @@ class Panel:
         return (U,) if self._flat else (U, V)
 
     def _build(self, number: int, elements: int) -> None:
-        for name in (*self._lines, *(self._actions if self._elements is not None else ())):
+        for name in self._lines:
             self._board.DeleteButton(name)
         for name in (ELEMENT, *self._ways):
             self._board.DeleteSlider(name, strict=False)
-        self._lines, self._clicks, self._elements = {}, {}, elements
+        self._lines, self._elements = {}, elements
         if elements:
             # a slider needs a range, also where there is nothing to choose from
             self._board.AddSlider(ELEMENT, 1, max(elements, 2), 1, number)
             for name in self._ways:
                 self._board.AddSlider(name, -self._reach, self._reach, self._step, 0.0)
-        for name in self._actions:
-            self._board.AddButton(name)
 
 
 def _by_name(lines: list[Line]) -> dict[str, Line]:

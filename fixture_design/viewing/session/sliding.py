@@ -9,7 +9,7 @@ import numpy as np
 from fixture_design.arrays import Point, read_only
 from fixture_design.contacts import unit_normal
 from fixture_design.errors import OffSurfaceError, UnsupportedError
-from fixture_design.geometry import PartGeometry, Polygon, slide
+from fixture_design.geometry import PartGeometry, Polygon, Slide, slide
 from fixture_design.geometry.surface import SolidSurface
 from fixture_design.layout import Element, LineTip, PadTip, PinTip, Pose, Tip
 from fixture_design.viewing.scene.shapes import Vector3
@@ -43,13 +43,11 @@ def slid(element: Element, ground: Ground, u: float, v: float) -> Element:
         return element
     p_PC = ground.pose.inverse().points(element.at[None])[0]
     first, second = axes(ground, element.at)
-    way = ground.pose.inverse().vectors((u * first + v * second)[None])[0]
-    end = slide(ground.geometry, p_PC, way, float(np.hypot(u, v)), ground.surface_gap)
+    length = float(np.hypot(u, v))
+    way = ground.pose.inverse().vectors((u / length * first + v / length * second)[None])[0]
+    end = slide(ground.geometry, p_PC, way, length, ground.surface_gap)
     at = read_only(ground.pose.points(end.point[None])[0])
-    began = _frame(end.path[1] - end.path[0], _normal(ground.geometry, end.path[:2].mean(axis=0)))
-    ended = _frame(end.direction, _normal(ground.geometry, end.path[-2:].mean(axis=0)))
-    turn = ground.pose.rotation @ ended @ began.T @ ground.pose.rotation.T
-    return replace(element, at=at, tip=_turned(element.tip, turn))
+    return replace(element, at=at, tip=_turned(element.tip, _turn(ground, end)))
 
 
 def axes(ground: Ground, p_W: Point) -> tuple[Vector3, Vector3]:
@@ -72,6 +70,18 @@ def _normal(geometry: PartGeometry, p_PC: Vector3) -> Vector3:
     clauses = SolidSurface(geometry).local(p_PC).clauses
     mean = np.sum([unit_normal(normal) for clause in clauses for normal in clause], axis=0)
     return mean / np.linalg.norm(mean)
+
+
+def _turn(ground: Ground, end: Slide) -> np.ndarray:
+    """The rotation that takes the walker's axes at the start of a slide to those at its end, in W."""
+    steps = np.diff(end.path, axis=0)
+    taken = np.flatnonzero(np.linalg.norm(steps, axis=1) > 0)
+    if not len(taken):
+        return np.eye(3)
+    first, last = int(taken[0]), int(taken[-1])
+    assert isinstance(ground.geometry, PartGeometry)
+    frames = [_frame(steps[k], _normal(ground.geometry, end.path[k : k + 2].mean(axis=0))) for k in (first, last)]
+    return ground.pose.rotation @ frames[1] @ frames[0].T @ ground.pose.rotation.T
 
 
 def _frame(direction: Vector3, normal: Vector3) -> np.ndarray:
