@@ -14,7 +14,7 @@ import pytest
 import fixture_design as fd
 from fixture_design.layout import Layout
 from fixture_design.viewing.session import Interactive
-from fixture_design.viewing.session.lines import answer_lines
+from fixture_design.viewing.session.lines import answer_lines, element_line
 from fixture_design.viewing.session.panel import ELEMENT, U
 from tests.viewing.browser import PATIENCE, Page, browser
 
@@ -131,7 +131,10 @@ def test_add_remove_undo_and_save_by_clicks(session: Session) -> None:
     new = session.live.layout.elements[-1]
     session.says([f"{new.name}: clamp, point", *answers(session.live.layout)])
     session.click("undo")
-    session.until(lambda: session.live.layout is first)
+    session.says([element_line(first.elements[-1]).text])
+    assert session.live.layout is first
+    session.slide(ELEMENT, 0.01)
+    session.until(lambda: session.live.session.chosen == first.elements[0].name)
     session.slide(ELEMENT, 0.99)
     session.until(lambda: session.live.session.chosen == first.elements[-1].name)
     session.click("remove")
