@@ -166,3 +166,10 @@ def test_a_fixture_may_only_locate() -> None:
 def test_cancelled_at_once_gives_what_is_there() -> None:
     result = design(task(box(8)), Fake(box(8)), cancelled=lambda: True)
     assert result.satisfied in (Answer.UNDECIDED, Answer.YES)
+
+
+def test_fd_design_is_the_function_whatever_was_imported_before() -> None:
+    import fixture_design.design
+
+    assert fd_package.design is fixture_design.design
+    assert fixture_design.design.__call__ is fixture_design.design.design.design  # type: ignore[attr-defined]
