@@ -34,10 +34,9 @@ The folders state the theory, and each imports only from those to its right::
 * `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
 * `recognition`: contact states from measured forces and displacements: measurement sets, discriminants, classifier.
-* `io`: files. `viewing`: evidence in words, the sheet to sign. `batch`: thousands of layouts in worker processes.
+* `io`: files. `viewing`: evidence in words, the sheet to sign, the scene to look at (`viewing.scene`) as a page or a
+  picture; `viewing.session` changes a layout in the browser. `batch`: thousands of layouts in worker processes.
   `cli`: the command line.
-* `io`: files. `viewing`: evidence in words, the sheet to sign, the scene to look at (`viewing.scene`) as a page, a
-  picture or a live session. `batch`: thousands of layouts in worker processes. `cli`: the command line.
 
 How an answer is decided
 ========================
@@ -84,7 +83,7 @@ if TYPE_CHECKING:
     from fixture_design.layout import Layout, Verdict
     from fixture_design.recognition import Classifier, Recogniser, build_classifier
     from fixture_design.verification import check, contacts_of, verify
-    from fixture_design.viewing import preview
+    from fixture_design.viewing import interactive, preview
 
 #: Public names and the module each comes from; loaded when first asked for, so that `import fixture_design` is cheap.
 _HOME = {
@@ -102,6 +101,7 @@ _HOME = {
     "check": "verification",
     "contacts_of": "verification",
     "design": "design",
+    "interactive": "viewing",
     "preview": "viewing",
     "read_assembly": "io",
     "read_classifier": "io",
@@ -136,6 +136,7 @@ __all__ = [
     "check",
     "contacts_of",
     "design",
+    "interactive",
     "preview",
     "read_assembly",
     "read_classifier",

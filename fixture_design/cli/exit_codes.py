@@ -18,6 +18,7 @@ class ExitCode(IntEnum):
     INTERNAL_ERROR = 4
     INTERRUPTED = 130
     BROKEN_PIPE = 141
+    TERMINATED = 143
 
 
 _WORST_FIRST = (

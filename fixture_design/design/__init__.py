@@ -29,10 +29,9 @@ __all__ = [
 
 
 class _Callable(ModuleType):
-    """This package under the name of its function: once it is imported, `fixture_design.design` means it."""
+    """`fixture_design.design` is this package once anything has imported it; `fd.design(task)` works all the same."""
 
-    def __call__(self, *args: object, **keys: object) -> DesignResult:
-        return design(*args, **keys)  # type: ignore[arg-type]
+    __call__ = staticmethod(design)
 
 
 sys.modules[__name__].__class__ = _Callable

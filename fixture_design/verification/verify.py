@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -62,17 +62,28 @@ QUESTIONS = {
 _NAMES_SHOWN = 5
 
 
+@runtime_checkable
+class GroupJudge(Protocol):
+    """How one group is judged: `group_verdict`, or something that remembers what it said."""
+
+    def __call__(
+        self, group: Group, report: Scale, notes: list[str], tolerances: Tolerances, sets: bool
+    ) -> GroupVerdict: ...
+
+
 def verify(
     layout: Layout,
     tolerances: Tolerances = DEFAULT,
     found: FoundContacts | None = None,
     sets: bool = True,
+    judge: GroupJudge | None = None,
 ) -> Verdict:
     """Contacts, findings and requirements of a layout.
 
     Args:
         found: the layout's contacts, where they are known already (`contacts_of`).
         sets: whether the admissible sets are wanted, which no answer needs.
+        judge: in place of `group_verdict`.
 
     Raises:
         InputError: the layout has no contacts at all, its geometry cannot be used, or an element is off the surface.
@@ -80,7 +91,7 @@ def verify(
     found = found or contacts_of(layout)
     notes = list(found.notes) + coincident_notes(found.contacts, found.report)
     groups = groups_of(layout, found.contacts)
-    verdicts = group_verdicts(groups, found.report, notes, tolerances, sets)
+    verdicts = group_verdicts(groups, found.report, notes, tolerances, sets, judge)
     verdicts = {group.name: with_use(verdicts[group.name], layout, group, found, tolerances) for group in groups}
     notes += [*weight_notes(layout, groups, found), *_preload_notes(layout)]
     requirements = tuple(_requirement_verdicts(groups, verdicts, notes))
@@ -136,7 +147,12 @@ def _check_part_file(layout: Layout) -> None:
 
 
 def group_verdicts(
-    groups: Sequence[Group], report: Scale, notes: list[str], tolerances: Tolerances, sets: bool = True
+    groups: Sequence[Group],
+    report: Scale,
+    notes: list[str],
+    tolerances: Tolerances,
+    sets: bool = True,
+    judge: GroupJudge | None = None,
 ) -> dict[str, GroupVerdict]:
     """The verdict of every group; groups with the same contacts are looked at once."""
     sharing: dict[tuple[str, ...], list[Group]] = {}
@@ -145,7 +161,8 @@ def group_verdicts(
     verdicts: dict[str, GroupVerdict] = {}
     for alike in sharing.values():
         names = [group.name for group in alike]
-        found = group_verdict(replace(alike[0], name=" and ".join(names)), report, notes, tolerances, sets)
+        joint = replace(alike[0], name=" and ".join(names))
+        found = (judge or group_verdict)(joint, report, notes, tolerances, sets)
         verdicts |= {name: replace(found, name=name) for name in names}
     return {group.name: verdicts[group.name] for group in groups}
 

@@ -2,7 +2,7 @@
 
 Nothing here decides anything; it shows what a verdict holds. A layout and its verdict make a *scene*, one plain
 description; `preview_page` is an HTML file of it, `picture` a PNG (`urdf/bracket/held.png` and `free.png` are two),
-`drake_meshcat` a live session. All of it is loaded when it is first asked for.
+`session` a live one in Drake's Meshcat. All of it is loaded when it is first asked for.
 """
 
 from __future__ import annotations
@@ -20,10 +20,12 @@ if TYPE_CHECKING:
     from fixture_design.viewing.scene import Scene, scene_of
     from fixture_design.viewing.scene_page import preview_page
     from fixture_design.viewing.scene_picture import picture
+    from fixture_design.viewing.session import interactive
 
 _HOME = {
     "Preview": "previews",
     "Scene": "scene",
+    "interactive": "session",
     "picture": "scene_picture",
     "preview": "previews",
     "preview_page": "scene_page",
@@ -37,6 +39,7 @@ __all__ = [
     "card",
     "evidence_in_words",
     "graph_picture",
+    "interactive",
     "picture",
     "preview",
     "preview_page",

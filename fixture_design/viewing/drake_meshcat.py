@@ -54,6 +54,7 @@ def draw(
     board: Any = meshcat
     story = story or (None if scene.first is None else scene.stories[scene.first])
     things, labels = scene.told(story)
+    things = (*things, *(_written(scene, label, number) for number, label in enumerate(labels) if label.text.strip()))
     if before is None:
         board.Delete(ROOT)
         camera = scene.camera if story is None or story.camera is None else story.camera
@@ -68,9 +69,6 @@ def draw(
         drawn = tuple(thing for thing in things if thing.path in new)
     for thing in drawn:
         _draw(board, scene, thing)
-    board.Delete(f"{ROOT}/labels")
-    for number, label in enumerate(labels):
-        _write(board, scene, label, number)
     _play(board, scene, story)
     return things
 
@@ -88,13 +86,10 @@ def _draw(board: Any, scene: Scene, thing: Thing) -> None:
     board.SetTriangleMesh(path, scene.to_view(mesh.vertices).T, mesh.triangles.T.astype(np.int32), color)
 
 
-def _write(board: Any, scene: Scene, label: Label, number: int) -> None:
-    """Letters as outlines that face the camera: this Meshcat has no text."""
-    from pydrake.geometry import Rgba  # noqa: PLC0415 - as above
-
+def _written(scene: Scene, label: Label, number: int) -> Thing:
+    """Letters as outlines that face the camera, which are things as others: this Meshcat has no text."""
     starts, ends = _outline(scene, label)
-    if len(starts):
-        board.SetLineSegments(f"{ROOT}/labels/{number}", starts.T, ends.T, _THIN, Rgba(*rgb(label.color), 1.0))
+    return Thing(f"labels/{number}", Lines(scene.center + scene.size * np.stack([starts, ends], axis=1)), label.color)
 
 
 def _outline(scene: Scene, label: Label) -> tuple[Points3, Points3]:
@@ -132,6 +127,9 @@ def _play(board: Any, scene: Scene, story: Story | None) -> None:
 
     animation: Any = MeshcatAnimation(frames_per_second=30.0)
     if story is None or story.animation is None:
+        # what a story before this one has moved stands still, where it is
+        board.SetAnimation(animation)
+        board.SetTransform(f"{ROOT}/part", _transform(scene, Pose.identity(3)))
         return
     path = f"{ROOT}/{story.animation.path}"
     for time, pose in rounds(story.animation):

@@ -27,6 +27,7 @@ def scene_of(
     verdict: Verdict,
     solid: Solid | None = None,
     tell: Collection[tuple[str, str]] | None = None,
+    camera: Camera | None = None,
 ) -> Scene:
     """Everything there is to see of a layout: the part, what touches it, what acts, and a story for each answer.
 
@@ -35,6 +36,7 @@ def scene_of(
         solid: the part's, where it is made already (`solid_of`): that of the layout's part where it stands.
         tell: (group, claim) of the stories that are wanted with all there is to see; by default of all. What follows a
             slider has no time for those that nobody looks at.
+        camera: that looks already, at this and at every story; by default one is placed that has all in view.
 
     Raises:
         InputError: the part or a body cannot be read.
@@ -51,15 +53,14 @@ def scene_of(
             *feature_things(layout, verdict, size),
         )
     )
-    still = [thing.shape for thing in things if not thing.path.startswith(("loads", "normals", "cones"))]
-    seen = hull_of(extent(still))
     surface = joined([triangles_of(thing.shape) for thing in things if thing.path.startswith("part/") and thing.solid])
     hull = hull_of(surface.vertices) if solid is None else solid.hull
-    camera = camera_of(layout.space, verdict.contacts, seen, center)
-    stories = tuple(
-        replace(story, camera=_camera(camera, story, seen, hull))
-        for story in stories_of(layout, verdict, surface, hull, center, size, tell)
-    )
+    stories = stories_of(layout, verdict, surface, hull, center, size, tell)
+    if camera is None:
+        still = [thing.shape for thing in things if not thing.path.startswith(("loads", "normals", "cones"))]
+        seen = hull_of(extent(still))
+        camera = camera_of(layout.space, verdict.contacts, seen, center)
+        stories = tuple(replace(story, camera=_camera(camera, story, seen, hull)) for story in stories)
     return Scene(
         name=layout.name,
         center=center,

@@ -31,9 +31,9 @@ def camera_of(space: Space, contacts: Sequence[Contact], seen: Points3, center: 
     if space == "planar":
         away, up = np.array([0.0, -np.sin(_PLANAR_TILT), np.cos(_PLANAR_TILT)]), np.array([0.0, 1.0, 0.0])
     else:
-        normals = np.array([lifted(unit_normal(normal)) for contact in contacts for normal in contact.normals])
+        normals = [lifted(unit_normal(normal)) for contact in contacts for normal in contact.normals]
         directions = [_direction(azimuth) for azimuth in _AZIMUTHS]
-        fronts = [float(np.maximum(normals @ way, 0.0).sum()) for way in directions]
+        fronts = [sum(max(float(normal @ way), 0.0) for normal in normals) for way in directions]
         away, up = directions[int(np.argmax(np.round(fronts, 6)))], np.array([0.0, 0.0, 1.0])
     return aimed(Camera(center + away, center, up, _FOV), seen)
 
