@@ -262,7 +262,7 @@ def test_little_friction_takes_much_preload(friction: float) -> None:
     """A clamp on the face across the load's holds it by friction alone: F = 2 mu p, whatever that takes."""
     some = candidates(Spots(FEW, AWAY, ("face",) * len(FEW)), friction)
     no, none, ends = np.zeros(1, dtype=bool), np.zeros(len(some)), np.full(len(some), 1e12)
-    duties = Duties(np.array([[1000.0, 0, 0]]), no, no, none, ends, none, np.ones(len(some), dtype=bool))
+    duties = Duties(np.array([[1000.0, 0, 0]]), no, no, none, ends, none, np.ones(len(some), dtype=bool), np.zeros(3))
     least = Program(some.pushes(rough=True), some.pushes(rough=False), duties).least(np.array([0, 1, 6]), np.array([5]))
     assert least.total == pytest.approx(1000.0 / (2 * friction), rel=1e-6)
 
