@@ -212,7 +212,7 @@ LEAST_PUSH = 1.0
 
 #: How much more than the least preloads design tries, one after the other [-]: the least is where something gives way,
 #: so that a verdict is a tie there; pyramids in friction cones take a few parts in a hundred, seats more.
-MORE_PUSH = (1e-3, 0.05, 0.3)
+MORE_PUSH = (1e-3, 0.05, 0.3, 1.0, 4.0, 19.0)
 
 #: Preloads of a design hold the loads this much larger, too, where they can [-]: the least hold them and no more.
 RESERVE = 0.05

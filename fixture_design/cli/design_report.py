@@ -26,7 +26,7 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield printable(_step_in_words(step, reference, length))
     if result.free is not None:
         yield f"free whatever candidate touches the part: {motion_in_words(result.free, reference, length)}"
-    if result.changes is not None:
+    if result.changes is not None and (result.changes.found > 0 or result.satisfied is Answer.YES):
         yield _changes_in_words(result.changes)
     if result.bound is not None:
         yield _bound_in_words(result.bound)

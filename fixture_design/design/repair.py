@@ -78,7 +78,9 @@ def repair(
         found = _fewest(task, ways, problem, seed, progress)
         if np.isfinite(found.found):
             best = _best_places(problem, found.locators, found.clamps, found.pool)
-            return _drawn_up(asked, ways, problem, best, found.bound, found.complete)
+            # what certainly does not hold does not hold without a change
+            least = max(found.bound, int(before is not None and before.satisfied is Answer.NO))
+            return _drawn_up(asked, ways, problem, best, least, found.complete)
         proven &= found.complete and not some.errors.any()
     what = "no changes among these candidates" if proven else "no changes were found that"
     reason = f"{what} make it locate, let out and close what it has to"
