@@ -213,3 +213,7 @@ LEAST_PUSH = 1.0
 #: How much more than the least preloads design tries, one after the other [-]: the least is where something gives way,
 #: so that a verdict is a tie there; pyramids in friction cones take a few parts in a hundred, seats more.
 MORE_PUSH = (1e-3, 0.05, 0.3)
+
+#: Nothing is proved impossible with coefficients of friction below this, that are not zero [-]: linear programs lose
+#: them beside ones, and the pushes that they need are beyond anything.
+LEAST_FRICTION = 1e-7

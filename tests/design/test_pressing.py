@@ -285,6 +285,13 @@ def test_what_no_push_holds_is_not_said_to_be_a_matter_of_limits() -> None:
     assert result.reason == "no layout among these candidates holds the loads, whatever the clamps push with"
 
 
+def test_nothing_is_proved_about_friction_that_solvers_lose() -> None:
+    require = {"locators": ("deterministic", "loadable"), "all": ("holds_loads",)}
+    rules = CandidateRules(points=FEW)
+    result = design(plate(require=require, friction=1e-9, candidates=rules, loads=(load((1000.0, 0.0)),)))
+    assert result.satisfied is Answer.UNDECIDED
+
+
 def test_a_clamp_comes_with_its_preload_as_one_change() -> None:
     elements = [given(f"L{k + 1}", "locator", at) for k, at in enumerate([(0.05, 0.0), (0.15, 0.0), (0.0, 0.05)])]
     clamp = given("K1", "clamp", (0.2, 0.05), preload=1e5)
