@@ -216,3 +216,7 @@ MORE_PUSH = (1e-3, 0.05, 0.3, 1.0, 4.0, 19.0)
 
 #: Preloads of a design hold the loads this much larger, too, where they can [-]: the least hold them and no more.
 RESERVE = 0.05
+
+#: Nothing is proved impossible with coefficients of friction below this, that are not zero [-]: linear programs lose
+#: them beside ones, and the pushes that they need are beyond anything.
+LEAST_FRICTION = 1e-7

@@ -12,7 +12,7 @@ from fixture_design.arrays import Indices
 from fixture_design.design.clamping import margins
 from fixture_design.design.problem import Problem
 from fixture_design.design.pushing import Program, Pushes
-from fixture_design.tolerances import DEFAULT, GOOD_MARGIN
+from fixture_design.tolerances import DEFAULT, GOOD_MARGIN, LEAST_FRICTION
 
 #: Rounds of column generation, and candidates that join in each.
 _MOST_ROUNDS, _AT_ONCE = 40, 4
@@ -75,10 +75,18 @@ def _bounded(
         more = _worth_it(program.use(pushes.duals, pool), pool, 0.0, locators)
         some = _worth_it(program.worth(pushes.duals, clampable), clampable, pushes.price, clamps)
         if not len(more) and not len(some):
+            if np.isinf(pushes.total) and _rubs_too_little(problem):
+                break
             reacting = np.argsort(-pushes.reactions)[: int((pushes.reactions > 0).sum())]
             return pushes.total, locators[reacting]
         locators, clamps = np.concatenate([locators, more]), np.concatenate([clamps, some])
     return None, locators
+
+
+def _rubs_too_little(problem: Problem) -> bool:
+    """Whether some friction is there and too small for what is said about all pushes."""
+    friction = problem.candidates.friction
+    return bool(((friction > 0) & (friction < LEAST_FRICTION)).any())
 
 
 def _worth_it(values: np.ndarray, pool: Indices, least: float, there: Indices) -> Indices:
