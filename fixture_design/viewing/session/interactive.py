@@ -73,7 +73,7 @@ class Interactive(Steering):
             ready.set()
             live.run(self._stopping.is_set)
         except Exception as error:  # noqa: BLE001 - told by `start` or `stop`, in the thread that called them
-            clear_frames(error.__traceback__)  # else the Meshcat in them would end in that thread, and the program
+            _forget_frames(error)  # else the Meshcat in them would end in that thread, and the program with it
             self.failure = error
         finally:
             if live is not None:
@@ -139,6 +139,13 @@ def _bare(task: Task) -> Layout:
     """The layout of a task to begin with, nothing but the part, with what is required."""
     plan = next(plans(task, PartSurface(task.part, task.surface_gap)))
     return empty_layout(task, plan.require, plan.friction)
+
+
+def _forget_frames(error: BaseException | None) -> None:
+    """Of an exception and those that it came of."""
+    while error is not None:
+        clear_frames(error.__traceback__)
+        error = error.__cause__ or error.__context__
 
 
 def _tell_recovered(path: Path | None) -> None:

@@ -122,7 +122,7 @@ class Live:
             return
         names = [element.name for element in self.steering.layout.elements]
         chosen, count = now[0], len(names)
-        self._reading = self._panel.show(names.index(chosen) + 1 if chosen in names else 1, count)
+        self._reading = self._panel.show(names.index(chosen) + 1 if chosen in names else 1, count, self._reading)
 
     def _lines(self, told: tuple[str, str] | None) -> list[Line]:
         steering = self.steering

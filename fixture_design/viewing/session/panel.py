@@ -64,15 +64,24 @@ class Panel:
         """The line that was clicked since it was written."""
         return next((line for name, line in self._lines.items() if self._board.GetButtonClicks(name)), None)
 
-    def show(self, number: int, elements: int) -> Reading | None:
-        """The sliders for one of some elements, as it stands; what they say then."""
+    def show(self, number: int, elements: int, known: Reading | None = None) -> Reading | None:
+        """The sliders for one of some elements, as it stands; what they are set to.
+
+        Args:
+            known: what they said when they were last followed; what they say by now stays where that is possible.
+        """
         if elements != self._elements:
             self._build(number, elements)
         elif elements:
-            self._board.SetSliderValue(ELEMENT, number)
-            for name in self._ways:
-                self._board.SetSliderValue(name, 0.0)
-        return self.read()
+            for name, wanted, was in self._wanted(number, known):
+                if wanted != was:
+                    self._board.SetSliderValue(name, wanted)
+        return Reading(number, 0.0, 0.0) if elements else None
+
+    def _wanted(self, number: int, known: Reading | None) -> list[tuple[str, float, float | None]]:
+        """Of each slider its name, what it is to say, and what it said."""
+        said = (None, None, None) if known is None else (float(known.number), known.u, known.v)
+        return list(zip((ELEMENT, *self._ways), (float(number), 0.0, 0.0), said, strict=False))
 
     def write(self, lines: list[Line]) -> None:
         """The lines; from the first that differs on they are written again."""

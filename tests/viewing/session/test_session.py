@@ -19,7 +19,7 @@ from fixture_design.viewing.session import Session, Steering, begun
 from fixture_design.viewing.session import session as steps
 from fixture_design.viewing.session.files import free_name, recover, stem_of, target_of
 from fixture_design.viewing.session.lines import answer_lines, harmless
-from fixture_design.viewing.session.panel import Panel
+from fixture_design.viewing.session.panel import ELEMENT, Panel, Reading, U
 from fixture_design.viewing.session.sliding import axes, slid
 from fixture_design.viewing.session.steering import round_size
 
@@ -418,6 +418,9 @@ def test_the_panel_keeps_its_order_and_counts_clicks() -> None:
     reading = panel.read()
     assert reading is not None
     assert (reading.number, reading.u) == (2, 0.0)
+    board.sliders[ELEMENT], board.sliders[U] = 1.0, 3.0  # by the user, while 2 is being shown
+    panel.show(2, 2, Reading(2, 1e-3, 0.0))
+    assert (board.sliders[ELEMENT], board.sliders[U]) == (1.0, 0.0)
     panel.show(1, 0)
     assert panel.read() is None
     assert not board.sliders
