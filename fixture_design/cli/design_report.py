@@ -18,6 +18,9 @@ _OUTCOME = {
     Answer.UNDECIDED: "undecided",
 }
 
+#: Errors of locators by which accuracy is told [m].
+_OFF = 1e-5
+
 
 def design_in_words(result: DesignResult) -> Iterator[str]:
     """Lines for a person."""
@@ -33,7 +36,7 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
     if result.out is not None:
         yield f"the part comes out along [{', '.join(f'{x:.3g}' for x in result.out)}]"
     if result.accuracy is not None and result.best_accuracy is not None:
-        yield f"accuracy {_accuracy_in_words(result.accuracy, result.best_accuracy)}"
+        yield _accuracy_in_words(result, result.accuracy, result.best_accuracy)
     if result.margin is not None:
         yield f"margin of closure {result.margin:.3g}"
     if result.preload is not None:
@@ -103,8 +106,12 @@ def _preload_in_words(result: DesignResult) -> str:
     return words
 
 
-def _accuracy_in_words(accuracy: float, best: float) -> str:
-    """How far it may be from the best one."""
-    return (
-        f"{accuracy:.4g}, and no locators among these candidates have less than {best:.4g} ({accuracy / best - 1:.1%})"
-    )
+def _accuracy_in_words(result: DesignResult, accuracy: float, best: float) -> str:
+    """How exact the locators are, and how far that may be from the best ones."""
+    gap = f"({max(accuracy / best - 1, 0.0):.1%})"
+    if result.layout is not None and result.layout.key_features:
+        taken, least = accuracy * _OFF, best * _OFF
+        words = f"accuracy: with locators {_OFF * 1e3:g} mm off, a key feature is off by {taken:.3g} of its tolerance"
+        return f"{words} at most, and with none of these candidates by less than {least:.3g} {gap}"
+    words = f"accuracy: 1 / volume of the locators' rows is {accuracy:.4g}"
+    return f"{words}, and with none of these candidates below {best:.4g} {gap}"

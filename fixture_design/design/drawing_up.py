@@ -44,7 +44,9 @@ def layout_of(
     """The layout with the elements chosen, locators first; bodies and contacts of the start as they were."""
     roles: tuple[tuple[Role, Indices], ...] = (("locator", locators), ("clamp", clamps))
     elements = [
-        new_element(candidates, index, role, names[index]) for role, chosen in roles for index in chosen.tolist()
+        new_element(candidates, index, role, names[index], task.candidates.tolerance)
+        for role, chosen in roles
+        for index in chosen.tolist()
     ]
     start = task.start
     given = {named.name for named in (*start.bodies, *start.contacts)} if start else set()
@@ -72,11 +74,12 @@ def empty_layout(task: Task, require: Mapping[str, tuple[Requirement, ...]], fri
     )
 
 
-def new_element(candidates: Candidates, index: int, role: Role, name: str) -> Element:
-    """The element that a candidate is, or becomes."""
+def new_element(candidates: Candidates, index: int, role: Role, name: str, tolerance: float | None = None) -> Element:
+    """The element that a candidate is, or becomes; a new locator is placed to within ``tolerance`` [m]."""
     known = candidates.elements[index]
     if known is not None:
         return known
     make = candidates.makes[index]
     assert make is not None  # what is no element yet is made
-    return Element(name, role, read_only(candidates.places[index]), make.tip, make.axis)
+    placed = tolerance if role == "locator" else None
+    return Element(name, role, read_only(candidates.places[index]), make.tip, make.axis, placed)

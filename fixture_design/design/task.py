@@ -46,6 +46,7 @@ class CandidateRules:
         tip: of new elements.  more_tips: that they may have instead.
         pins: a round and a diamond pin in two holes are tried first; None for none.
         stem: sizes of what carries a tip, where these are not the usual ones.
+        tolerance: to which new locators are placed along the normal [m].
     """
 
     spacing: float | None = None
@@ -58,6 +59,7 @@ class CandidateRules:
     more_tips: tuple[Tip, ...] = ()
     pins: PinRules | None = None
     stem: StemSizes = field(default_factory=StemSizes)
+    tolerance: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,16 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from fixture_design.design import Objective
-from fixture_design.io.record_types import Coordinates, Friction, NotNegative, Positive, PushLimits, Record, Text
+from fixture_design.io.record_types import (
+    Coordinates,
+    Deviation,
+    Friction,
+    NotNegative,
+    Positive,
+    PushLimits,
+    Record,
+    Text,
+)
 from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField, or_point
 from fixture_design.layout import Space
 
@@ -74,6 +83,7 @@ class CandidatesRecord(Record):
     ) = Field(None, description="in place of `tip`: several, of which each new element has one")
     stem: StemRecord | None = None
     pins: PinsRecord | None = None
+    tolerance: Deviation | None = Field(None, description="of new locators' positions along the normal [length]")
 
 
 class LimitsRecord(Record):

@@ -271,3 +271,12 @@ def test_ctrl_c_saves_the_best_so_far(command: Command, tmp_path: Path, monkeypa
     assert ran.code == 130
     assert told == ["candidates", "way out 1 of 2", "way out 2 of 2", ""]
     assert len(read_layout(tmp_path / "out.yaml").elements) == 5
+
+
+def test_new_locators_have_the_tolerance_that_candidates_give(command: Command, tmp_path: Path) -> None:
+    given = PLANAR.replace("spacing: 4", "spacing: 4, tolerance: 0.02")
+    assert given != PLANAR
+    ran = command("design", saved(tmp_path, given), "--json")
+    elements = json.loads(ran.out)["layout"]["elements"]
+    assert {e["tolerance"] for e in elements if e["role"] == "locator"} == {2e-5}
+    assert all("tolerance" not in e for e in elements if e["role"] == "clamp")
