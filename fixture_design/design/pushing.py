@@ -79,6 +79,10 @@ class _System:
         )  # fmt: skip
 
 
+#: More slack than the least, where the solver takes this for infeasible [-]: it keeps its equations to 1e-7.
+_SLACKS = (DEFAULT.near, 1e-6, 1e-5, 1e-4)
+
+
 @dataclass(frozen=True, eq=False)
 class Program:
     """What pushes how: face vectors of all candidates with and without friction, shape (n, k, d), and the duties."""
@@ -106,8 +110,10 @@ class Program:
             first = system.least(system.slacks, np.inf)
             assert first.x is not None  # slacks make every program feasible
             left = float(first.x[system.slacks].sum())
-            found = system.least(system.preloads, np.maximum(first.x[system.slacks], 0.0) + DEFAULT.near)
-            assert found.x is not None  # what came first is inside its limits
+            slack = np.maximum(first.x[system.slacks], 0.0)
+            found = next(
+                again for more in _SLACKS if (again := system.least(system.preloads, slack + more)).x is not None
+            )  # what came first is inside these limits, but for what the solver calls feasible
             priced = first if left > DEFAULT.near else found
         each, unit = np.zeros(len(clamps)), self._unit()
         each[pushing] = found.x[system.preloads] * unit
