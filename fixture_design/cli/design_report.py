@@ -85,6 +85,8 @@ def _changes_in_words(changes: ChangeBound) -> str:
 
 
 def _bound_in_words(bound: Bound) -> str:
+    if bound.elements == 0 and bound.found is not None:
+        return f"{bound.found} elements; how few could do is not known"
     roles = f" ({bound.locators} locators, {bound.clamps} clamps)" if bound.locators else ""
     least = f"at least {bound.elements} elements{roles}"
     among = f"among {bound.candidates} candidates{'' if bound.complete else ' in the directions that were tried'}"
