@@ -124,7 +124,7 @@ def test_without_two_holes_it_goes_on_without_pins_and_says_so(
 ) -> None:
     result = designed(plate(tmp_path, *holes))
     assert pins(result) == []
-    assert counts(result) == (6, 3)
+    assert counts(result) == (6, 1)  # the part slides out along the sides, where a screw motion leaves all of them
     assert any("without pins" in note for note in result.notes)
 
 

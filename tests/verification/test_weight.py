@@ -19,7 +19,7 @@ BRACKET = Path(__file__).resolve().parents[2] / "urdf" / "bracket" / "bracket.la
 
 def test_a_urdf_file_knows_it() -> None:
     layout = read_layout(BRACKET)
-    weight = weight_of(layout, contacts_of(layout))
+    weight = weight_of(layout, contacts_of(layout).geometry)
     assert isinstance(weight, Weight)
     np.testing.assert_allclose(weight.force, [0, 0, -9.81 * 0.103605085])
     x, y, _ = weight.center
@@ -48,6 +48,6 @@ def test_a_mesh_alone_does_not(tmp_path: Path) -> None:
 @pytest.mark.parametrize("gravity", [None, np.zeros(3)])
 def test_without_gravity_there_is_none(gravity: np.ndarray | None) -> None:
     layout = replace(read_layout(BRACKET), gravity=gravity)
-    weight = weight_of(layout, contacts_of(layout))
+    weight = weight_of(layout, contacts_of(layout).geometry)
     assert isinstance(weight, Weight)
     assert not weight.wrench.any()
