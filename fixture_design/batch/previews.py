@@ -17,7 +17,7 @@ from fixture_design.errors import InputError
 from fixture_design.layout import Layout, Verdict
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
-from fixture_design.viewing import card
+from fixture_design.viewing.card import card
 from fixture_design.viewing.markup import Markup, joined, tag
 
 #: Draws one layout with its contacts and verdict.

@@ -16,7 +16,7 @@ from fixture_design.batch.results import records_in
 from fixture_design.batch.summary import Robustness, Summary
 from fixture_design.io.text_file import write_text
 from fixture_design.version import VERSION
-from fixture_design.viewing import CARD_STYLE
+from fixture_design.viewing.card import CARD_STYLE
 from fixture_design.viewing.markup import Markup, joined, table, tag
 
 _STYLE = """

@@ -10,13 +10,12 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from fixture_design.viewing.card import CARD_STYLE, card
 from fixture_design.viewing.graph_picture import graph_picture, write_graph_picture
-from fixture_design.viewing.report import refuse_inputs, write_report
 from fixture_design.viewing.words import evidence_in_words
 
 if TYPE_CHECKING:
     from fixture_design.viewing.previews import Preview, preview
+    from fixture_design.viewing.report import refuse_inputs, write_report
     from fixture_design.viewing.scene import Scene, scene_of
     from fixture_design.viewing.scene_page import preview_page
     from fixture_design.viewing.scene_picture import picture
@@ -29,14 +28,14 @@ _HOME = {
     "picture": "scene_picture",
     "preview": "previews",
     "preview_page": "scene_page",
+    "refuse_inputs": "report",
     "scene_of": "scene",
+    "write_report": "report",
 }
 
 __all__ = [
-    "CARD_STYLE",
     "Preview",
     "Scene",
-    "card",
     "evidence_in_words",
     "graph_picture",
     "interactive",
