@@ -35,12 +35,9 @@ def least_of_all(problem: Problem, program: Program, locators: Indices, clamps: 
     pool = np.setdiff1d(problem.clampable, locators)
     for _ in range(_MOST_ROUNDS):
         pushes = program.least(locators, chosen)
-        outside = np.setdiff1d(pool, chosen)
-        worth = program.worth(pushes.duals, outside)
-        best = outside[np.argsort(-worth)[:_AT_ONCE]]
-        best = best[program.worth(pushes.duals, best) > pushes.price + DEFAULT.near]
+        best = _worth_it(program.worth(pushes.duals, pool), pool, pushes.price, chosen)
         if not len(best):
-            break
+            return chosen, pushes
         chosen = np.concatenate([chosen, best])
     return chosen, program.least(locators, chosen)
 
