@@ -31,7 +31,7 @@ from fixture_design.tolerances import DEFAULT
 #: Cuts after which the search says what it knows so far.
 _MOST_CUTS = 200
 #: Programs in which the bound does not rise, after which one that is nearly there may still be far from it.
-_MOST_IN_VAIN = 15
+_MOST_IN_VAIN = 50
 #: Between layouts with as many changes the one in which less leaves and comes is taken: what one of these costs [-].
 _LITTLE = 1e-4
 

@@ -226,7 +226,7 @@ def _past_locators(
     """What the search finds; searched again, a few times, without locators that the part runs into on its way out."""
     outcome = find(problem, seed, progress)
     bound = bound_of(problem, outcome)
-    if outcome.found is None or refused(task, outcome.found):
+    if outcome.found is None or refused(problem, outcome.found):
         return without_layout(problem, outcome, bound, start, seed)
     result, names = _drawn_up(task, ways, problem, outcome, bound, start, plan)
     assert result.verdict is not None

@@ -21,7 +21,7 @@ from fixture_design.tolerances import DEFAULT
 #: An exchange is made if it makes things better by this part of them [-]; fewer digits would go round in circles.
 _BETTER = 1e-6
 #: Exchanges of one descent at most.
-_MOST_EXCHANGES = 100
+MOST_EXCHANGES = 100
 #: A determinant that shrinks by more than this in one exchange is on its way to a singular layout [-].
 _LEAST_RATIO = 1e-3
 
@@ -98,7 +98,7 @@ def exchanged(
     fixed: Sequence[int] | Indices,
     features: Features | None = None,
     allowed: Callable[[Indices], np.ndarray] | None = None,
-    most: int = _MOST_EXCHANGES,
+    most: int = MOST_EXCHANGES,
 ) -> Indices:
     """Locators after the best exchanges, one after the other, until none makes them better.
 
@@ -113,7 +113,7 @@ def exchanged(
     basis = _span(rows, chosen)
     inside = rows @ basis.T
     movable = ~np.isin(chosen, np.asarray(fixed, dtype=np.int64))
-    for _ in range(most):
+    for _ in range(most if len(pool) and movable.any() else 0):
         gains = _gains(inside, basis, pool, chosen, features)
         gains[~movable] = 0.0
         gains[:, np.isin(pool, chosen)] = 0.0

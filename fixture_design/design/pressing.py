@@ -113,7 +113,8 @@ def pressed_clamps(problem: Problem, program: Program, locators: Indices, clamps
     margin_first = "margin" in order and ("preload" not in order or order.index("margin") < order.index("preload"))
     if not (margin_first and np.isfinite(total)):
         clamps, total = _least_of_as_many(problem, program, locators, clamps)
-    most = problem.limits.clamps if problem.limits.clamps is not None else len(clamps) + _MOST_MORE
+    limit = problem.limits.clamps
+    most = len(clamps) + _MOST_MORE if limit is None else limit + problem.supporting
     while program.duties.required and not np.isfinite(total) and len(clamps) < most:
         found, pushes = least_of_all(problem, program, locators, clamps)
         more = [i for i in found[np.argsort(-pushes.each)].tolist() if _joins(problem, locators, clamps, i)]

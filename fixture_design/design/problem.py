@@ -75,6 +75,12 @@ class Problem:
         """All elements that stay."""
         return np.array([*self.locators, *self.clamps], dtype=np.int64)
 
+    @property
+    def supporting(self) -> int:
+        """How many of `clamps` are none, but supports, fingers or bodies: these count towards no limit of clamps."""
+        elements = [self.candidates.elements[index] for index in self.clamps]
+        return sum(element is not None and element.role != "clamp" for element in elements)
+
     @cached_property
     def closing_rows(self) -> Several:
         """The rows that must close, shape (n, k, d)."""

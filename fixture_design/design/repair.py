@@ -8,36 +8,29 @@ found step by step. Among changes that are as few, the places are those that are
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fixture_design.arrays import Indices
-from fixture_design.contacts import Role
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.changed_layout import changed, index_of, raised
-from fixture_design.design.changes import Options, fewest_changes
-from fixture_design.design.clamping import closes, held_best
+from fixture_design.design.changing import Fewest, best_places, fewest_over_ways, more_exact
 from fixture_design.design.features import features_of
 from fixture_design.design.fitting import fitting, standing
 from fixture_design.design.found import Found
-from fixture_design.design.locating import exchanged
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty
 from fixture_design.design.preloads import duties_of
-from fixture_design.design.pressing import pressed_clamps
 from fixture_design.design.problem import Problem
 from fixture_design.design.raising import fewest_raised
-from fixture_design.design.regions import ways_out
 from fixture_design.design.result import ChangeBound, DesignResult
-from fixture_design.design.search import search
 from fixture_design.design.shortfall import failing
-from fixture_design.design.start import begun, elements_of
+from fixture_design.design.start import elements_of
 from fixture_design.design.task import CandidateRules, Limits, Task
 from fixture_design.design.touching import candidates_of
 from fixture_design.design.ways import Progress, Ways, ways_of
 from fixture_design.errors import UnsupportedError
-from fixture_design.layout import Answer, Layout, Requirement
-from fixture_design.tolerances import COPLANAR_ANGLE
+from fixture_design.layout import Answer, Layout, Requirement, Verdict
 
 
 def repair(
@@ -75,12 +68,11 @@ def repair(
     everything, _ = fitting(task, ways, everything)
     for some in by_certainty(everything):
         problem = _problem(task, ways, some, cancelled)
-        found = _fewest(task, ways, problem, seed, progress)
+        found = fewest_over_ways(task, ways, problem, seed, progress)
         if np.isfinite(found.found):
-            best = _best_places(problem, found.locators, found.clamps, found.pool)
             # what certainly does not hold does not hold without a change
             least = max(found.bound, int(before is not None and before.satisfied is Answer.NO))
-            return _drawn_up(asked, ways, problem, best, least, found.complete)
+            return _first_that_holds(asked, ways, problem, replace(found, bound=least))
         proven &= found.complete and not some.errors.any()
     what = "no changes among these candidates" if proven else "no changes were found that"
     reason = f"{what} make it locate, let out and close what it has to"
@@ -141,116 +133,32 @@ def _problem(task: Task, ways: Ways, candidates: Candidates, cancelled: Callable
     )  # fmt: skip
 
 
-def _of_role(problem: Problem, role: Role) -> Indices:
-    elements = enumerate(problem.candidates.elements)
-    return np.array([index for index, e in elements if e is not None and e.role == role], np.int64)
-
-
-@dataclass(frozen=True, eq=False)
-class _Fewest:
-    """The fewest changes there are in some ways out.
-
-    Attributes:
-        found: how many; inf without any.  bound: no layout takes fewer, if ``complete``.
-        locators, clamps: of the layout they lead to.  pool: where its locators may be.
+def _first_that_holds(asked: Layout, ways: Ways, problem: Problem, fewest: Fewest) -> DesignResult:
+    """What the fewest changes lead to, at their best places or where they were found; where that is not exact enough,
+    more and more locators are moved besides.
     """
-
-    found: float
-    bound: int
-    complete: bool
-    locators: Indices
-    clamps: Indices
-    pool: Indices
-
-
-def _fewest(task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress) -> _Fewest:
-    """The fewest changes. What a design from this start gives has only to be matched."""
-    return _among_ways(problem, seed, progress, _as_designed(task, ways, problem, seed, progress))
-
-
-def _as_designed(task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress) -> _Fewest:
-    """What the search for the best layout makes of this start, with all clamps that it had."""
-    none = np.zeros(0, dtype=np.int64)
-    new = problem.candidates.chosen(problem.new)
-    start = begun(task, new, ways, keep_all=True, leaves=True, opens=True)
-    as_begun = replace(
-        problem, locators=start.locators, clamps=start.others, spare=start.spare, leaves=True, opens=True
-    )
-    found = None if start.conflict or problem.never_stopped is not None else search(as_begun, seed, progress).found
-    if found is None:
-        return _Fewest(np.inf, 0, True, none, none, none)
-    locators, clamps = _of_role(problem, "locator"), _of_role(problem, "clamp")
-    after = np.setdiff1d(np.union1d(found.clamps, clamps), np.array(problem.clamps, dtype=np.int64))
-    moves = _changes(locators, found.locators) + _changes(clamps, after)
-    pool = problem.new
-    if found.out is not None:
-        pool = pool[(problem.candidates.normals[pool, 0] @ found.out) < -COPLANAR_ANGLE]
-    return _Fewest(float(moves), 0, True, found.locators, after, pool)
-
-
-def _changes(before: Indices, after: Indices) -> int:
-    """Of one role: one that leaves and one that comes are one change."""
-    return max(len(np.setdiff1d(before, after)), len(np.setdiff1d(after, before)))
-
-
-def _among_ways(problem: Problem, seed: int, progress: Progress, best: _Fewest) -> _Fewest:
-    """The fewest changes in any way out, or ``best`` if there are no fewer; the bound is of all these ways.
-
-    The part may slide out along its locators; that some motion leaves all of them is asked for itself.
-    """
-    locators, clamps = _of_role(problem, "locator"), _of_role(problem, "clamp")
-    fixed = np.array([i for i, e in enumerate(problem.candidates.elements) if e is not None and e.fixed], np.int64)
-    ways, complete = ways_out(replace(problem, opens=False), seed)
-    bound, complete = np.inf, complete and not problem.vague
-    # where many locators have to leave there are many changes
-    for number, (_, allowed) in enumerate(sorted(ways, key=lambda way: int((~way[1][locators]).sum()))):
-        leaving = int((~allowed[locators]).sum())
-        if not allowed[np.intersect1d(fixed, locators)].all():
-            continue
-        if leaving >= best.found:
-            bound = min(bound, leaving)
+    locators, clamps = best_places(problem, fewest.locators, fewest.clamps, fewest.pool)
+    first = _drawn_up(asked, ways, problem, (locators, clamps), fewest)
+    if first.satisfied is Answer.YES:
+        return first
+    as_found = _drawn_up(asked, ways, problem, (fewest.locators, fewest.clamps), fewest)
+    if as_found.satisfied is Answer.YES or first.verdict is None or not _inexact(first.verdict):
+        return as_found if as_found.satisfied is Answer.YES else first
+    for exact in more_exact(problem, locators, clamps, fewest.pool):
+        if problem.cancelled():
             break
-        progress(f"way out {number + 1} of {len(ways)}", number / len(ways))
-        pool = problem.new[allowed[problem.new]]
-        options = Options.of(problem, locators[allowed[locators]], clamps, fixed, pool)
-        found = fewest_changes(problem, options, leaving, best.found, problem.cancelled)
-        sure = found
-        if problem.closes == "with friction":  # the true cones close with no more than the larger ones
-            sure = fewest_changes(replace(problem, generous=True), options, leaving, best.found, problem.cancelled)
-        bound, complete = min(bound, sure.bound), complete and sure.complete
-        if found.locators is not None and found.clamps is not None:
-            best = _Fewest(float(found.bound), 0, True, found.locators, found.clamps, pool)
-    least = int(min(bound, best.found)) if np.isfinite(min(bound, best.found)) else 0
-    return replace(best, bound=least, complete=complete and not problem.cancelled())
+        result = _drawn_up(asked, ways, problem, (exact, clamps), fewest)
+        if result.satisfied is Answer.YES:
+            return result
+    return first
 
 
-def _best_places(problem: Problem, locators: Indices, clamps: Indices, pool: Indices) -> tuple[Indices, Indices]:
-    """What comes, moved to where it is best: locators as exact as they can be, clamps with the largest margin."""
-    staying = locators[~np.isin(locators, problem.new)]
-    if problem.each == 1 and len(locators) == problem.candidates.freedoms and problem.locates:
-        moved = exchanged(problem.rows, pool, locators, staying, problem.features)
-        everything = np.concatenate([moved, clamps])
-        if problem.together(everything) and (problem.closes is None or closes(problem.closing_rows, everything)):
-            locators = moved
-    coming = clamps[np.isin(clamps, problem.new)]
-    others = np.concatenate([locators, np.setdiff1d(clamps, coming), np.array(problem.clamps, dtype=np.int64)])
-    if problem.closes is not None and len(coming):
-        free = np.setdiff1d(problem.new, others)
-        coming, _ = held_best(
-            problem.closing_rows, others, coming, free, problem.candidates.places, standing=problem.standing
-        )
-    old = np.setdiff1d(clamps, problem.new)
-    if problem.pushing is not None and len(coming):
-        pressed = pressed_clamps(
-            replace(problem, spare=tuple(old.tolist())), problem.pushing, locators, np.concatenate([old, coming])
-        )
-        if np.isfinite(pressed.total) and len(pressed.clamps) == len(clamps):
-            coming = np.setdiff1d(pressed.clamps, old)
-    return locators, np.concatenate([old, coming])
+def _inexact(verdict: Verdict) -> bool:
+    return any(r.require == "accurate" and r.answer is not Answer.YES for r in verdict.requirements)
 
 
 def _drawn_up(
-    asked: Layout, ways: Ways, problem: Problem, best: tuple[Indices, Indices], bound: int, complete: bool
+    asked: Layout, ways: Ways, problem: Problem, best: tuple[Indices, Indices], fewest: Fewest
 ) -> DesignResult:
     """The changed layout with its verdict and the record of changes; preloads chosen where forces ask for it."""
     locators, clamps = best
@@ -264,8 +172,9 @@ def _drawn_up(
         if pushed is not None:
             (after, verdict), steps = pushed, [*steps, *raised(asked, pushed[0])]
     satisfied = Answer.YES if verdict.satisfied is None else verdict.satisfied
-    reason = None if satisfied is Answer.YES else f"what was found does not verify: {failing(verdict)}"
+    if satisfied is not Answer.YES:  # no number of changes is known to do
+        reason = f"what was found does not verify: {failing(verdict)}"
+        return DesignResult(Answer.UNDECIDED, after, verdict, tuple(steps), reason=reason)
     return DesignResult(
-        Answer.UNDECIDED if satisfied is Answer.NO else satisfied, after, verdict, tuple(steps),
-        changes=ChangeBound(len(steps), bound, complete), reason=reason,
-    )  # fmt: skip
+        satisfied, after, verdict, tuple(steps), changes=ChangeBound(len(steps), fewest.bound, fewest.complete)
+    )

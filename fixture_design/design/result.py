@@ -15,7 +15,7 @@ class Bound:
 
     Attributes:
         locators, clamps: no layout that does what is asked has fewer; counted with those that must stay.
-        elements: nor fewer in all.
+        elements: nor fewer in all, supports and bodies that stay among them.
         found: elements of the layout; None without one.
         complete: whether that is so in all directions out, or only in those that were tried.
         candidates: among how many it holds.

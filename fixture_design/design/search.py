@@ -20,11 +20,11 @@ from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, independent
 from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
+from fixture_design.design.moving import moved_while_closed
 from fixture_design.design.pressing import least_bound, least_here, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
 from fixture_design.design.ways import Progress
-from fixture_design.tolerances import GOOD_MARGIN
 
 #: Restarts in one region, and regions that are searched for better layouts of the same size.
 RESTARTS, MOST_REGIONS = 24, 8
@@ -129,7 +129,8 @@ def _reacting(problem: Problem, region: Region, rng: np.random.Generator) -> Ind
     freedoms = problem.candidates.freedoms
     rows = independent(problem.rows, problem.rows_of(reacting), kept, rng, freedoms)
     rows = independent(problem.rows, problem.rows_of(region.pool), rows, rng, freedoms)
-    if len(rows) < freedoms or not problem.together(problem.owners(rows)):
+    new = np.setdiff1d(problem.owners(rows), problem.kept)
+    if len(rows) < freedoms or not problem.together(new) or not problem.joins(new, problem.kept).all():
         return None
     return np.union1d(problem.owners(rows), np.array(problem.locators, dtype=np.int64))
 
@@ -185,6 +186,7 @@ def _turned_round(problem: Problem, region: Region, rng: np.random.Generator) ->
     """Fewer clamps first, then locators for them: those of the bound, or of a smallest set that closes."""
     if problem.locators or problem.clamps or problem.limits.spacing > 0 or problem.each > 1:
         return
+    none = problem.new[:0]
     if region.out is None:
         chosen = fewest_closing(problem.rows, rng, tries=3, cancelled=problem.cancelled)
         if chosen is not None and len(chosen) == problem.candidates.freedoms + 1:
@@ -192,33 +194,16 @@ def _turned_round(problem: Problem, region: Region, rng: np.random.Generator) ->
             if not problem.together(chosen):
                 return
             clamp = int(rng.integers(len(chosen)))
-            yield _moved(problem, region, np.delete(chosen, clamp), chosen[[clamp]]), chosen[[clamp]]
+            yield (
+                moved_while_closed(problem, region.pool, np.delete(chosen, clamp), chosen[[clamp]], none),
+                chosen[[clamp]],
+            )
         return
     clamps = region.clamps.chosen if region.clamps is not None else None
     usable = problem.passing(region.pool, region.out)
     locators = None if clamps is None or not len(usable) else locators_for(problem.rows, usable, clamps, rng)
     if locators is not None and clamps is not None and problem.together(np.concatenate([locators, clamps])):
-        yield _moved(problem, region, locators, clamps), clamps
-
-
-def _moved(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Indices:
-    """Locators after those exchanges that leave the set closed, and not by less than is good enough."""
-    start = np.concatenate([locators, clamps])
-    least = min(
-        float(margins(problem.closing_rows, start[None])[0]), max(GOOD_MARGIN, 2 * problem.candidates.tolerances.near)
-    )
-
-    usable = problem.passing(region.pool, region.out)
-
-    def allowed(chosen: Indices) -> np.ndarray:
-        fit = []
-        for place in range(len(chosen)):
-            rest = np.concatenate([np.delete(chosen, place), clamps])
-            sets = np.column_stack([np.broadcast_to(rest, (len(usable), len(rest))), usable])
-            fit.append((margins(problem.closing_rows, sets) > least) & problem.joins(usable, rest))
-        return np.array(fit)
-
-    return exchanged(problem.rows, usable, locators, (), problem.features, allowed)
+        yield moved_while_closed(problem, usable, locators, clamps, none), clamps
 
 
 def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Found:

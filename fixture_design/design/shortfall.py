@@ -10,7 +10,6 @@ from fixture_design.design.problem import Problem
 from fixture_design.design.regions import least_clamps_sliding
 from fixture_design.design.result import Bound, DesignResult
 from fixture_design.design.start import Start
-from fixture_design.design.task import Task
 from fixture_design.layout import Answer, Verdict
 
 
@@ -22,20 +21,20 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
     if outcome.least_elements is not None:
         return Bound(0, 0, outcome.least_elements, found, outcome.complete, len(problem.candidates))
     locators = fewest_locators(problem) if problem.determines else len(problem.locators)
-    clamps = outcome.least_clamps
     single = problem.each == 1 and problem.closes == "without friction"
-    elements = max(locators + clamps, problem.candidates.dimension + 1 if single else 0)
+    elements = max(locators + outcome.least_clamps, problem.candidates.dimension + 1 if single else 0)
+    clamps = max(0, outcome.least_clamps - problem.supporting)
     letting_go = problem.leaves and problem.opens
     return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates), letting_go)
 
 
-def refused(task: Task, found: Found) -> bool:
+def refused(problem: Problem, found: Found) -> bool:
     """Whether there are more elements than there may be, or they cannot hold what has to be held."""
     if not found.holds:
         return True
-    limits = task.limits
+    limits = problem.limits
     many_locators = limits.locators is not None and len(found.locators) > limits.locators
-    return many_locators or (limits.clamps is not None and len(found.clamps) > limits.clamps)
+    return many_locators or (limits.clamps is not None and len(found.clamps) - problem.supporting > limits.clamps)
 
 
 def failing(verdict: Verdict) -> str:
@@ -81,7 +80,8 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
         if most is not None and least > most:
             certain = bound.complete and (what == "clamps" or problem.determines)
             if certain and what == "clamps" and problem.leaves and problem.opens:
-                certain = least_clamps_sliding(problem, seed, most + 1) > most
+                allowed = most + problem.supporting
+                certain = least_clamps_sliding(problem, seed, allowed + 1) > allowed
             answer = Answer.NO if certain else Answer.UNDECIDED
             reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
             if not certain and problem.leaves and problem.opens:

@@ -10,8 +10,8 @@ import pytest
 from fixture_design.cones.kernel import closure_test, closure_tests
 from fixture_design.contacts import Role
 from fixture_design.design import DesignResult, repair
-from fixture_design.layout import Answer, Element, Layout, Part, Pose
-from fixture_design.verification import check
+from fixture_design.layout import Answer, Element, KeyFeature, Layout, Part, Pose
+from fixture_design.verification import check, verify
 from tests.design.fakes import Fake, Spots, box, candidates, polygon
 
 CORNERS = np.array([[0.0, 0], [2, 0], [2.3, 1.1], [0, 1]])
@@ -158,3 +158,20 @@ def test_a_locator_on_the_wrong_side_is_moved() -> None:
     result = repair(layout(spots, elements, {"locators": ("deterministic", "strongly_accessible")}), Fake(spots))
     confirm(result, elements)
     assert [step.action for step in result.steps] == ["moved"]
+
+
+def test_a_layout_that_is_not_exact_enough_gets_one_locator_moved() -> None:
+    corners = np.array([[0.0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]])
+    part = Part("plate", "polygon", None, corners, 1.0, Pose.identity(2))
+    places = {"L1": (0.09, 0), "L2": (0.11, 0), "L3": (0, 0.05), "K1": (0.1, 0.1), "K2": (0.2, 0.05)}
+    elements = tuple(
+        Element(name, "locator" if name[0] == "L" else "clamp", np.array(at), tolerance=1e-5)
+        for name, at in places.items()
+    )
+    feature = KeyFeature("corner", np.array([0.2, 0.1]), np.array([0.0, 1]), 5e-5)  # off by 10 locator errors: 1e-4
+    require = {"locators": ("deterministic", "accurate"), "all": ("form_closure",)}
+    given = Layout("given", "planar", part, elements=elements, key_features=(feature,), require=require)
+    assert verify(given).satisfied is Answer.NO
+    result = repair(given)
+    confirm(result, list(elements))
+    assert [(step.action, step.element) for step in result.steps] in ([("moved", "L1")], [("moved", "L2")])
