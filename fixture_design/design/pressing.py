@@ -156,7 +156,7 @@ def _least_of_as_many(problem: Problem, program: Program, locators: Indices, cla
     useful = np.union1d(np.setdiff1d(found[pushes.each > 0], staying), moving)
     for some in islice(combinations(useful.tolist(), len(moving)), _MOST_SETS):
         if fits(np.array(some, dtype=np.int64)):
-            least = program.least(locators, np.concatenate([staying, some]).astype(np.int64)).total
+            least = program.total(locators, np.concatenate([staying, some]).astype(np.int64))
             if least < total * (1 - _BETTER):
                 best, total = np.concatenate([staying, some]).astype(np.int64), least
         if total <= pushes.total * (1 + _BETTER):
@@ -186,7 +186,7 @@ def _swapped(
                 moved = np.append(best[best != old], new)
                 if not fits(np.setdiff1d(moved, staying)):
                     continue
-                least = program.least(locators, moved).total
+                least = program.total(locators, moved)
                 if least < total * (1 - _BETTER):
                     best, total, failures = moved, least, 0
                     break
@@ -232,9 +232,15 @@ def _exchanged_once(
                 continue
             if problem.closes is not None and _margin(problem, moved, pressed.clamps) < least_margin:
                 continue
-            if program.least(moved, pressed.clamps).less_than(pushes, _BETTER):
+            if _less(program, moved, pressed.clamps, pushes):
                 return moved
     return None
+
+
+def _less(program: Program, locators: Indices, clamps: Indices, than: Pushes) -> bool:
+    if np.isfinite(than.total):
+        return program.total(locators, clamps) < than.total * (1 - _BETTER)
+    return program.least(locators, clamps).less_than(than, _BETTER)
 
 
 def _locates(problem: Problem, locators: Indices) -> bool:

@@ -124,6 +124,14 @@ class Program:
             return Pushes(np.inf, left * unit, each, duals, pressing, reactions)
         return Pushes(float(each.sum()), 0.0, each, duals, 1.0 + pressing, reactions)
 
+    def total(self, locators: Indices, clamps: Indices) -> float:
+        """The total of `least` alone, which is inf at once where there is no balance."""
+        pushing = self.duties.pushes[clamps]
+        reacting = np.concatenate([locators, clamps[~pushing]]).astype(np.int64)
+        system = self._system(reacting, clamps[pushing], len(locators))
+        found = system.least(system.preloads, 0.0)
+        return np.inf if found.x is None else float(found.x[system.preloads].sum()) * self._unit()
+
     def _system(self, reacting: Indices, clamps: Indices, locators: int) -> _System:
         """The equations of all wrenches, one under the other, and the columns of each beside those of the next."""
         duties, count, unit = self.duties, len(clamps), self._unit()

@@ -28,6 +28,9 @@ from fixture_design.design.ways import Progress
 
 #: Restarts in one region, and regions that are searched for better layouts of the same size.
 RESTARTS, MOST_REGIONS = 24, 8
+#: Restarts without anything better, after which a region is left where clamps push: each one places them anew, by
+#: hundreds of linear programs. In a region that has not given anything better yet, fewer.
+_PATIENCE, _FIRST_PATIENCE = 4, 2
 #: What an element of the start costs next to a new one [-]: it is kept where that makes no difference to the number.
 _KEPT_COST = 0.99
 
@@ -89,14 +92,17 @@ def _better_within(
     problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, restarts: int = RESTARTS
 ) -> Found | None:
     """The best of one region, or ``best`` if that is better."""
+    in_vain, patience = 0, restarts if problem.pushing is None else _FIRST_PATIENCE if best else _PATIENCE
     for restart in range(restarts):
-        if problem.cancelled():
+        if problem.cancelled() or in_vain >= patience:
             break
+        before = best
         first = _reacting(problem, region, rng) if restart == 0 else None
         for locators, clamps in _sets(problem, region, rng, best, first):
             found = _finished(problem, region, locators, clamps)
             if best is None or found.score(problem.objective) < best.score(problem.objective):
                 best = found
+        in_vain, patience = (in_vain + 1, patience) if best is before else (0, max(patience, _PATIENCE))
     return best
 
 
