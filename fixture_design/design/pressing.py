@@ -103,10 +103,15 @@ class Pressed:
     holds: bool
 
 
-def pressed_clamps(problem: Problem, program: Program, locators: Indices, clamps: Indices) -> Pressed:
+def pressed_clamps(
+    problem: Problem, program: Program, locators: Indices, clamps: Indices, most: int | None = None
+) -> Pressed:
     """The clamps moved to where they push least, and more of them where they cannot hold what has to be held.
 
     They stay where they are if the margin of closure is to come first and they hold the loads.
+
+    Args:
+        most: clamps that there may be; None for some more, within the limits.
     """
     total = program.least(locators, clamps).total
     order = problem.objective
@@ -114,7 +119,8 @@ def pressed_clamps(problem: Problem, program: Program, locators: Indices, clamps
     if not (margin_first and np.isfinite(total)):
         clamps, total = _least_of_as_many(problem, program, locators, clamps)
     limit = problem.limits.clamps
-    most = len(clamps) + _MOST_MORE if limit is None else limit + problem.supporting
+    allowed = len(clamps) + _MOST_MORE if limit is None else limit + problem.supporting
+    most = allowed if most is None else min(most, allowed)
     while program.duties.required and not np.isfinite(total) and len(clamps) < most:
         found, pushes = least_of_all(problem, program, locators, clamps)
         more = [i for i in found[np.argsort(-pushes.each)].tolist() if _joins(problem, locators, clamps, i)]

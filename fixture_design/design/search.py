@@ -99,7 +99,7 @@ def _better_within(
         before = best
         first = _reacting(problem, region, rng) if restart == 0 else None
         for locators, clamps in _sets(problem, region, rng, best, first):
-            found = _finished(problem, region, locators, clamps)
+            found = _finished(problem, region, locators, clamps, best)
             if best is None or found.score(problem.objective) < best.score(problem.objective):
                 best = found
         in_vain, patience = (in_vain + 1, patience) if best is before else (0, max(patience, _PATIENCE))
@@ -212,8 +212,12 @@ def _turned_round(problem: Problem, region: Region, rng: np.random.Generator) ->
         yield moved_while_closed(problem, usable, locators, clamps, none), clamps
 
 
-def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Found:
-    """The set with its clamps where they hold best, and what it is worth."""
+def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indices, best: Found | None) -> Found:
+    """The set with its clamps where they hold best, and what it is worth.
+
+    Args:
+        best: what there is already: where the fewest elements come first, no clamps are added beyond its number.
+    """
     margin, spacing, places = 0.0, problem.limits.spacing, problem.candidates.places
     new = clamps[~np.isin(clamps, [*problem.clamps, *problem.spare])]
     if problem.closes is not None and closes(problem.closing_rows, np.concatenate([locators, clamps])):
@@ -222,8 +226,10 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
         clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
     preload, holds = 0.0, True
     if problem.pushing is not None:
-        pressed = pressed_clamps(problem, problem.pushing, locators, clamps)
-        if _preload_before_accuracy(problem):
+        first = best is not None and best.holds and problem.objective[:1] == ("fewest",)
+        most = len(best.clamps) if best is not None and first else None
+        pressed = pressed_clamps(problem, problem.pushing, locators, clamps, most)
+        if _preload_before_accuracy(problem) and (pressed.holds or not first):
             locators, pressed = pressed_together(
                 problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
             )
