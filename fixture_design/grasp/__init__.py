@@ -1,0 +1,1 @@
+"""Grasps: the same theory with a hand. A grasp is a fixture with fingers."""
