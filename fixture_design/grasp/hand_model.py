@@ -235,8 +235,12 @@ def load_hand(hand: Hand) -> HandModel:
     return replace(model, fingertips=tips, notes=(*notes, *said))
 
 
-def built_plant(text: ModelText) -> tuple[Any, Any, list[Any]]:
-    """The plant with its root link welded to the world, its diagram, and its movable joints."""
+def built_plant(text: ModelText, beside: str | None = None) -> tuple[Any, Any, list[Any]]:
+    """The plant with its root link welded to the world, its diagram, and its movable joints.
+
+    Args:
+        beside: the name of a free body that is to be there, too.
+    """
     from pydrake.multibody.parsing import Parser
     from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
     from pydrake.systems.framework import DiagramBuilder
@@ -254,6 +258,10 @@ def built_plant(text: ModelText) -> tuple[Any, Any, list[Any]]:
         raise RuntimeError(f"the links do not form one tree: {', '.join(roots)} are nobody's child")
     if roots:
         plant.WeldFrames(plant.world_frame(), plant.GetBodyByName(roots[0], models[0]).body_frame())
+    if beside is not None:
+        from pydrake.multibody.tree import SpatialInertia, default_model_instance
+
+        plant.AddRigidBody(beside, default_model_instance(), SpatialInertia.SolidSphereWithMass(1.0, 0.1))
     plant.Finalize()
     return plant, builder.Build(), [joint for joint in joints if joint.num_positions()]
 
