@@ -20,7 +20,7 @@ from fixture_design.grasp.result import Grasp
 from fixture_design.grasp.robustness import PoseError, robust_share
 from fixture_design.grasp.spots import feature
 from fixture_design.grasp.torques import Drives
-from fixture_design.grasp.touching import Touching, clearance, touching
+from fixture_design.grasp.touching import Touching, runs_into, touching
 from fixture_design.layout import Part, element_name
 from fixture_design.tolerances import FINGER_GAP
 from fixture_design.verification import contacts_of, verify
@@ -78,7 +78,7 @@ def obstacle(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> str | N
                 return "the hand runs into the table"
     X_PW, solid = site.part.pose.inverse(), features_of(site.geometry).solid
     for name, link in posture.model.links.items():
-        if clearance(link, composed(X_PW, poses[name]), solid, FINGER_GAP).distance < -FINGER_GAP:
+        if runs_into(link, composed(X_PW, poses[name]), solid, FINGER_GAP):
             return "a fingertip is in the part" if name in {tip.link for tip in tips} else f"{name} runs into the part"
     return None
 
@@ -103,27 +103,35 @@ def drafted(posture: Posture, site: Site) -> Draft | str:
     return Draft(posture, found, contacts, tuple(sorted(names)), measured)
 
 
-def judged(draft: Draft, site: Site, load: Vector | None, error: PoseError | None, seed: int) -> Grasp:
-    """The grasp with its verdict, what it holds, and how robust it is.
+def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Grasp:
+    """The grasp with its verdict, and how robust it is.
 
     Args:
-        load: a wrench on the part that the drives are to hold, about the centre of mass, shape (6,) [N, N m].
         error: of the part's pose; None: robustness is not asked for.
     """
     posture, layout = draft.posture, draft.touching.layout
     verdict = verify(layout, found=draft.found, sets=False)
-    drives = Drives.of(posture, draft.found.contacts, draft.touching.links, site.center)
     touching_names = {element_name(element.name) for element in layout.elements}
     tips = [tip for tip in posture.model.fingertips if tip.name in touching_names]
     robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
+    return Grasp(
+        posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
+        notes=draft.touching.notes,
+    )  # fmt: skip
+
+
+def with_strength(grasp: Grasp, load: Vector | None) -> Grasp:
+    """The grasp with what its drives hold: in the worst direction, and of a load.
+
+    Args:
+        load: a wrench on the part about its centre of mass, shape (6,) [N, N m].
+    """
+    drives = Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
     held = None if load is None else drives.least_effort(load)
-    notes = draft.touching.notes
+    notes = grasp.notes
     if load is not None and held is None:
         notes = (*notes, "the drives do not hold the load that was asked for")
-    return Grasp(
-        posture, layout, verdict, draft.touching.links, draft.features, draft.quality, drives.weakest(), site.center,
-        robust, held, notes,
-    )  # fmt: skip
+    return replace(grasp, weakest=drives.weakest(), held=held, notes=notes)
 
 
 def grasp_at(posture: Posture, part: Part, geometry: PartGeometry, load: Vector | None = None) -> Grasp:
@@ -140,7 +148,7 @@ def grasp_at(posture: Posture, part: Part, geometry: PartGeometry, load: Vector 
     measured = quality(contacts.contacts, contacts.report.reference, contacts.report.length)
     inside = tuple(f"{name} is {depth * 1000:.3g} mm inside the part" for name, depth in found.overlaps.items())
     draft = Draft(posture, replace(found, notes=(*found.notes, *inside)), contacts, (), measured)
-    return judged(draft, site, load, PoseError(), 0)
+    return with_strength(judged(draft, site, PoseError(), 0), load)
 
 
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:

@@ -38,13 +38,15 @@ class LinkGeometry:
 
     Attributes:
         name: of the link.  pieces: its shapes in the link's frame, each closed.
-        balls: those of the shapes that are balls, or ends of capsules.
+        balls: those of the shapes that are balls; a capsule, one piece, has two.
+        only_balls: whether it is made of nothing else; balls are measured exactly.
         notes: what had to be replaced or left out, for people.
     """
 
     name: str
     pieces: tuple[Piece, ...]
     balls: tuple[Ball, ...] = ()
+    only_balls: bool = False
     notes: tuple[str, ...] = ()
 
     @cached_property
@@ -67,6 +69,8 @@ def link_geometry(
     name: str, shapes: list[GeometryId], inspector: SceneGraphInspector, meshes: Mapping[str, RawMesh], file: Path
 ) -> LinkGeometry | None:
     """The solids of a link; None where it has none."""
+    from pydrake.geometry import Sphere
+
     pieces: list[Piece] = []
     balls: list[Ball] = []
     notes: list[str] = []
@@ -78,7 +82,8 @@ def link_geometry(
         if piece is not None:
             pieces.append(_moved(piece, X_LG))
             balls += _balls(shape, X_LG)
-    return LinkGeometry(name, tuple(pieces), tuple(balls), tuple(notes)) if pieces else None
+    balls_only = all(isinstance(inspector.GetShape(shape_id), Sphere) for shape_id in shapes)
+    return LinkGeometry(name, tuple(pieces), tuple(balls), balls_only, tuple(notes)) if pieces else None
 
 
 def _pose(X_LG: object) -> Pose:

@@ -29,6 +29,9 @@ _PART = "part of this grasp"
 #: What positions may miss [m]; SNOPT's own tolerance is about that.
 _NEAR = 2e-6
 
+#: What part of a fingertip's spread is used: all of it would be a tie [-].
+_INSIDE = 0.98
+
 #: How far from a pad's middle its other two points are [m].
 _BESIDE = 0.01
 
@@ -81,7 +84,7 @@ class Reach:
         wanted = point + tip.radius * normal
         ik.AddPositionConstraint(link, tip.at, part, wanted - _NEAR, wanted + _NEAR)
         if tip.pad is None:
-            ik.AddAngleBetweenVectorsConstraint(link, tip.facing, part, -normal, 0.0, tip.spread)
+            ik.AddAngleBetweenVectorsConstraint(link, tip.facing, part, -normal, 0.0, tip.spread * _INSIDE)
             return
         X_PN = _tangent_frame(point, normal)
         everywhere = np.full(2, np.inf)

@@ -20,10 +20,10 @@ class Grasp:
         posture: where the hand is.  layout: its contacts, verified in ``verdict``.
         links: the link of each element or contact of the layout.
         features: what its fingertips touch; grasps of one family touch the same.
-        robust: share of pose errors at which it still closes; None where nobody asked.
-        weakest: the direction in which a force through the centre of mass is held worst.
-        held: the drives' torques for the load that was asked for; None without one, or where it is not held.
         center: the part's centre of mass in W [m].
+        robust: share of pose errors at which it still closes; None where nobody asked.
+        weakest: the direction in which a force through the centre of mass is held worst; None where nobody asked.
+        held: the drives' torques for the load that was asked for; None without one, or where it is not held.
     """
 
     posture: Posture
@@ -32,9 +32,9 @@ class Grasp:
     links: Mapping[str, str]
     features: tuple[str, ...]
     quality: Quality
-    weakest: Weakest
     center: Point
     robust: float | None = None
+    weakest: Weakest | None = None
     held: Held | None = None
     notes: tuple[str, ...] = ()
 

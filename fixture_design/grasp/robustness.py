@@ -66,18 +66,36 @@ def _small(shift: Float[np.ndarray, "3"], turn: Float[np.ndarray, "3"], center: 
 def _given_way(
     tip: Fingertip, X_PL: Pose, surface: SolidSurface, posture: Posture, error: PoseError
 ) -> list[Contact]:
-    """The contacts of a fingertip that gives way until it touches; in P."""
+    """The contacts of a fingertip that gives way until it touches; in P.
+
+    A pad has as many as it has corners on the surface, and in its middle one with the patch of its skin where these
+    are fewer than three.
+    """
+    if tip.pad is None:
+        return _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
+    signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+    corners = [_CORNER * (u * tip.pad[0] * tip.sideways + v * tip.pad[1] * tip.across) for u, v in signs]
+    found = _contacts_at(tip, corners, X_PL, surface, posture, error)
+    return found if len(found) >= 3 else found + _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
+
+
+def _contacts_at(
+    tip: Fingertip,
+    corners: Sequence[Float[np.ndarray, "3"]],
+    X_PL: Pose,
+    surface: SolidSurface,
+    posture: Posture,
+    error: PoseError,
+) -> list[Contact]:
+    """The contacts of some points of a fingertip, given from its ``at``."""
     facing = X_PL.vectors(tip.facing[None])[0]
-    corners = [np.zeros(3)]
-    if tip.pad is not None:
-        signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
-        corners = [_CORNER * (u * tip.pad[0] * tip.sideways + v * tip.pad[1] * tip.across) for u, v in signs]
+    single = len(corners) == 1
     friction = posture.model.hand.friction if tip.friction is None else tip.friction
     found = []
-    for number, corner in enumerate(corners):
+    for corner in corners:
         distance, foot = surface.nearest(X_PL.points((tip.at + corner)[None])[0])
         size = 0.0 if tip.pad is None else _CORNER * float(np.hypot(*tip.pad))
-        if abs(distance - tip.radius) > _GIVES + 3 * error.position + 3 * error.rotation * size:
+        if abs(distance - tip.radius) > (_GIVES if single else _GIVES / 4) + 3 * error.position + 3 * error.rotation * size:
             continue
         try:
             local = surface.local(foot)
@@ -86,8 +104,8 @@ def _given_way(
         normal = unit_normal(local.clauses[0][0])
         if local.shape != "flat" or normal @ facing > -np.cos(_TILT if tip.pad is not None else tip.spread):
             continue
-        torsion = torsion_of_patch(tip.soft) if tip.soft is not None and tip.pad is None else 0.0
-        found.append(Contact(f"{tip.name} {number}", "finger", foot, ((normal,),), friction, torsion=torsion))
+        torsion = torsion_of_patch(tip.soft) if tip.soft is not None and single else 0.0
+        found.append(Contact(tip.name, "finger", foot, ((normal,),), friction, torsion=torsion))
     return found
 
 

@@ -20,7 +20,7 @@ from fixture_design.errors import UnsupportedError
 from fixture_design.geometry import PartGeometry, load_part
 from fixture_design.grasp.hand import Hand
 from fixture_design.grasp.hand_model import HandModel, load_hand
-from fixture_design.grasp.judging import Draft, Site, better_first, drafted, judged, obstacle
+from fixture_design.grasp.judging import Draft, Site, better_first, drafted, judged, obstacle, with_strength
 from fixture_design.grasp.library import Library, Seed, Spots
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.reach import Reach
@@ -42,8 +42,8 @@ from fixture_design.layout import Answer, Part, Pose
 #: Words and how much is done, 0 to 1.
 Progress = Callable[[str, float], None]
 
-#: Sets of points tried at most, and how many drafts are enough for each grasp asked for.
-TRIES, DRAFTS = 240, 4
+#: Sets of points tried at most; drafts made of one family, and those of them that are judged.
+TRIES, DRAFTS, JUDGED = 240, 3, 2
 
 #: Seeds tried for one set of points; two fingertips leave the hand free to roll: so many angles.
 _SEEDS, _ROLLS = 2, 8
@@ -225,13 +225,14 @@ class _Run:
 
     def _result(self, drafts: list[Draft]) -> GraspResult:
         judged_ones: list[Grasp] = []
-        for number, draft in enumerate(drafts):
-            self.progress("judging what was found", number / len(drafts))
-            judged_ones.append(judged(draft, self.site, self.search.load, self.search.error, self.search.seed))
+        chosen = _best_of_each(drafts)
+        for number, draft in enumerate(chosen):
+            self.progress("judging what was found", number / len(chosen))
+            judged_ones.append(judged(draft, self.site, self.search.error, self.search.seed))
         best: dict[tuple[str, ...], Grasp] = {}
         for one in better_first(judged_ones):
             best.setdefault(one.features, one)
-        grasps = tuple(list(best.values())[: self.search.most])
+        grasps = tuple(with_strength(one, self.search.load) for one in list(best.values())[: self.search.most])
         tried = dict(self.outcomes.most_common())
         holding = [g for g in grasps if g.closed is Answer.YES and (self.search.load is None or g.held is not None)]
         if holding:
@@ -248,6 +249,18 @@ class _Run:
             return "nothing was within reach"
         told = "; ".join(f"{words} ({count})" for words, count in self.outcomes.most_common(4))
         return f"no grasp was found: {told}"
+
+
+def _best_of_each(drafts: list[Draft]) -> list[Draft]:
+    """The drafts of each family that are best by epsilon, or where it is not known by least weight."""
+
+    def worth(draft: Draft) -> float:
+        return draft.quality.least_weight if draft.quality.epsilon is None else draft.quality.epsilon
+
+    families: dict[tuple[str, ...], list[Draft]] = {}
+    for draft in sorted(drafts, key=worth, reverse=True):
+        families.setdefault(draft.features, []).append(draft)
+    return [draft for family in families.values() for draft in family[:JUDGED]]
 
 
 def _rolled(seed: Seed, spots: Spots, rng: np.random.Generator) -> Iterator[Seed]:

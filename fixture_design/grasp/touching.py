@@ -23,7 +23,7 @@ from fixture_design.geometry.separation import Separation, Solid, separation
 from fixture_design.geometry.surface import SolidSurface
 from fixture_design.geometry.urdf_tree import composed
 from fixture_design.grasp.hand import Fingertip
-from fixture_design.grasp.link_geometry import LinkGeometry
+from fixture_design.grasp.link_geometry import Ball, LinkGeometry
 from fixture_design.grasp.posture import Posture
 from fixture_design.layout import Element, Layout, LineTip, PadTip, Part, PointTip, Pose, SoftTip, SphereTip, Tip
 from fixture_design.tolerances import FINGER_GAP, FLAT_ENOUGH
@@ -95,12 +95,31 @@ def touching(posture: Posture, part: Part, geometry: PartGeometry, gap: float = 
 
 def clearance(link: LinkGeometry, X_PL: Pose, part: Solid, gap: float) -> Separation:
     """How far a link is from the part, as far as it is nearer than ``gap`` [m]; else the gap's double."""
-    around = link.around
     far = 2 * gap
-    center = X_PL.points(around.center[None])
-    if part.distances(center)[0] - around.radius > gap:
+    if not _may_touch(link, X_PL, part, gap):
         return Separation(far, None)
+    if link.only_balls:
+        return min((_ball_clearance(ball, X_PL, part) for ball in link.balls), key=lambda found: found.distance)
     return separation(link.solid, part, X_PL, limit=far)
+
+
+def runs_into(link: LinkGeometry, X_PL: Pose, part: Solid, allowed: float) -> bool:
+    """Whether a link is deeper in the part than allowed [m]; sooner told than how deep."""
+    if not _may_touch(link, X_PL, part, -allowed):
+        return False
+    if link.only_balls:
+        return clearance(link, X_PL, part, allowed).distance < -allowed
+    return separation(link.solid, part, X_PL, limit=-allowed, enough=-allowed).point is not None
+
+
+def _may_touch(link: LinkGeometry, X_PL: Pose, part: Solid, gap: float) -> bool:
+    center = X_PL.points(link.around.center[None])
+    return bool(part.distances(center)[0] - link.around.radius <= gap)
+
+
+def _ball_clearance(ball: Ball, X_PL: Pose, part: Solid) -> Separation:
+    center = X_PL.points(ball.center[None])
+    return Separation(float(part.distances(center)[0]) - ball.radius, center[0])
 
 
 def tip_element(
