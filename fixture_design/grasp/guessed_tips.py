@@ -30,23 +30,33 @@ _SMALLEST_BALL = 3e-3
 #: A pad looks this near to where the other fingers are [rad], and has at least this area [m^2].
 _TOWARDS, _SMALLEST_PAD = 1.2, 2e-5
 
+#: Flats count as at the finger's end from this part of the farthest one's distance on [-].
+_END = 0.75
+
+#: Directions in which a ball's surroundings are looked at; how much those count that look away from other fingers [-];
+#: and the least spread that is guessed [rad].
+_DIRECTIONS, _ALSO, _LEAST_SPREAD = 2000, 0.3, 0.3
+
 #: Guessed balls may touch nearly all around: which part of them is meant nobody says [rad].
 _ALL_AROUND = 2.0
 
 #: Points this near to the foremost one are as far in front [m].
 _LEVEL = 3e-4
 
-#: Seed and number of the configurations by which it is told where the other fingers are.
-_LOOKED_AT = 30
+#: Number of configurations by which it is told where the other fingers are, and how much of their ranges they use [-].
+_LOOKED_AT, _AROUND = 30, 0.4
 
 
 @dataclass(frozen=True, eq=False)
 class _Leaf:
-    """The last link of a finger, the farthest point of its own, and the mean direction to the others, in its frame."""
+    """The last link of a finger, its farthest point, the mean direction to the other fingers, and the vertices of what it
+    is welded to, shape (n, 3); all in its frame.
+    """
 
     link: LinkGeometry
     end: Point
     towards: Point
+    beside: np.ndarray
 
 
 def guessed_tips(model: HandModel) -> tuple[tuple[Fingertip, ...], tuple[str, ...]]:
@@ -70,7 +80,8 @@ def _in_words(tip: Fingertip) -> str:
 def _leaves(model: HandModel) -> list[_Leaf]:
     names = _leaf_names(model)
     rng = np.random.default_rng(0)
-    drawn = [model.middle, *model.random(4 * _LOOKED_AT, rng)[:_LOOKED_AT]]
+    # around the middle: at the ends of their ranges fingers look past each other
+    drawn = [model.middle, *(model.middle + _AROUND * (model.random(4 * _LOOKED_AT, rng)[:_LOOKED_AT] - model.middle))]
     poses = [model.poses(q) for q in drawn]
     ends: dict[str, Point] = {}
     reach: dict[str, float] = {}
@@ -79,7 +90,23 @@ def _leaves(model: HandModel) -> list[_Leaf]:
         far = np.mean([np.linalg.norm(pose[name].points(vertices), axis=1) for pose in poses], axis=0)
         ends[name], reach[name] = vertices[int(np.argmax(far))], float(far.max())
     names = [name for name in names if reach[name] >= _REACH * max(reach.values())]
-    return [_Leaf(model.links[name], ends[name], _towards(name, names, ends, poses)) for name in names]
+    return [
+        _Leaf(model.links[name], ends[name], _towards(name, names, ends, poses), _beside(model, name, poses[0]))
+        for name in names
+    ]
+
+
+def _beside(model: HandModel, name: str, poses: dict) -> np.ndarray:
+    """The vertices of the links that a link is welded to, in its frame."""
+    plant = model._plant
+    welded = [body.name() for body in plant.GetBodiesWeldedTo(plant.GetBodyByName(name))]
+    X_LH = poses[name].inverse()
+    found = [
+        X_LH.points(poses[other].points(model.links[other].geometry.vertices))
+        for other in welded
+        if other != name and other in model.links
+    ]
+    return np.vstack(found) if found else np.zeros((0, 3))
 
 
 def _towards(name: str, names: Sequence[str], ends: dict[str, Point], poses: Sequence[dict]) -> Point:
@@ -121,10 +148,8 @@ def _tip(leaf: _Leaf) -> Fingertip:
     known = towards.any()
     ball = _ball(leaf)
     if ball is not None:
-        facing = towards if known else _outward(leaf)
-        return Fingertip(
-            link.name, link.name, read_only(ball.center), read_only(facing), ball.radius, spread=_ALL_AROUND
-        )
+        facing, spread = _skin_of(ball, leaf)
+        return Fingertip(link.name, link.name, read_only(ball.center), facing, ball.radius, spread=spread)
     pad = (_protruding(link, towards) or _flat(link, towards)) if known else None
     if pad is not None:
         return pad
@@ -137,6 +162,27 @@ def _ball(leaf: _Leaf) -> Ball | None:
     large = [ball for ball in leaf.link.balls if ball.radius >= _SMALLEST_BALL]
     near = [ball for ball in large if np.linalg.norm(ball.center - leaf.end) <= 2 * ball.radius]
     return max(near, key=lambda ball: ball.radius) if near else None
+
+
+def _skin_of(ball: Ball, leaf: _Leaf) -> tuple[Point, float]:
+    """The middle of the part of a ball that can touch, towards the other fingers, and the angle it reaches from there.
+
+    A ball touches only where nothing else of its finger is ahead: (v - center) . u <= radius for all its vertices v.
+    """
+    rng = np.random.default_rng(0)
+    directions = rng.standard_normal((_DIRECTIONS, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    ahead = (directions @ (leaf.beside - ball.center).T).max(axis=1, initial=-np.inf)
+    free = ahead <= ball.radius
+    if not free.any():
+        return read_only(_outward(leaf)), _ALL_AROUND
+    # those that look towards the other fingers count more
+    weights = np.clip(directions @ leaf.towards, 0.0, None) + _ALSO
+    middle = (directions[free] * weights[free, None]).sum(axis=0)
+    middle /= np.linalg.norm(middle)
+    covered = (directions @ middle)[~free]
+    spread = _ALL_AROUND if free.all() else float(np.arccos(np.clip(covered.max(), -1.0, 1.0)))
+    return read_only(middle), max(spread, _LEAST_SPREAD)
 
 
 def _outward(leaf: _Leaf) -> Point:
@@ -166,14 +212,21 @@ def _on_axis(direction: Point) -> Point:
 
 
 def _flat(link: LinkGeometry, towards: Point) -> Fingertip | None:
-    """The largest facet that looks towards the other fingers, by what it shows them."""
+    """The largest facet at the end that looks towards the other fingers, by what it shows them."""
     shown = [(_shown(link, facet, towards), facet) for facet in link.geometry.facets]
-    area, facet = max(shown, key=lambda pair: pair[0])
-    if area < _SMALLEST_PAD:
+    large = [(area, facet, _from_joint(link, facet)) for area, facet in shown if area >= _SMALLEST_PAD]
+    if not large:
         return None
+    farthest = max(distance for _, _, distance in large)
+    _, facet, _ = max((one for one in large if one[2] >= _END * farthest), key=lambda one: one[0])
     normal = np.array(facet.normal) / np.linalg.norm(facet.normal)
     used = np.unique(link.geometry.triangles[facet.triangles])
     return _pad(link, link.geometry.vertices[used], _on_axis(normal))
+
+
+def _from_joint(link: LinkGeometry, facet: Facet) -> float:
+    """How far the middle of a facet is from the link's own frame, which is at its joint [m]."""
+    return float(np.linalg.norm(link.geometry.vertices[np.unique(link.geometry.triangles[facet.triangles])].mean(axis=0)))
 
 
 def _shown(link: LinkGeometry, facet: Facet, towards: Point) -> float:

@@ -32,6 +32,9 @@ _NEAR = 2e-6
 #: What part of a fingertip's spread is used: all of it would be a tie [-].
 _INSIDE = 0.98
 
+#: Constraints hold if they are missed by no more than this [m, rad].
+_HOLDS = 1e-5
+
 #: How far from a pad's middle its other two points are [m].
 _BESIDE = 0.01
 
@@ -73,7 +76,8 @@ class Reach:
         guess[start : start + 7] = _quaternion_pose(seed.X_PH.inverse())
         program.AddQuadraticErrorCost(np.eye(len(mine)), guess[mine], q[mine])
         result = guarded(lambda: SnoptSolver().Solve(program, guess), self.model.name)
-        if not result.is_success():
+        # SNOPT may stop for other reasons where it is; what counts is whether the constraints hold
+        if not result.is_success() and result.GetInfeasibleConstraintNames(program, _HOLDS):
             return None
         values = result.GetSolution(q)
         X_HP = _pose_of(values[start : start + 7])

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.reach import Reach
 from fixture_design.grasp.result import FacingRegion, Grasp, GraspResult
 from fixture_design.grasp.robustness import PoseError
+from fixture_design.grasp.skin import Skin
 from fixture_design.grasp.spots import (
     Region,
     antipodal,
@@ -45,8 +46,14 @@ Progress = Callable[[str, float], None]
 #: Sets of points tried at most; drafts made of one family, and those of them that are judged.
 TRIES, DRAFTS, JUDGED = 240, 3, 2
 
-#: Seeds tried for one set of points; two fingertips leave the hand free to roll: so many angles.
-_SEEDS, _ROLLS = 2, 8
+#: Failures in a row after which a family is given up.
+PATIENCE = 24
+
+#: Seeds tried for one pair of points; two fingertips leave the hand free to roll: so many angles.
+_SEEDS, _ROLLS = 3, 8
+
+#: Sets whose seeds are looked up, so many each; and those of all seeds that are compared by what runs into the part.
+_SETS, _LOOKED_UP, _COMPARED = 1500, 4, 600
 
 #: Sets that miss by more than this before inverse kinematics are not tried [m].
 _TOO_FAR = 0.03
@@ -75,10 +82,11 @@ class Search:
 
 @dataclass(frozen=True, eq=False)
 class _Wanted:
-    """A set of spots to be reached, and the features they are on."""
+    """A set of spots to be reached, the features they are on, and seeds, where they were looked up already."""
 
     spots: Spots
     features: tuple[str, ...]
+    seeds: tuple[Seed, ...] = ()
 
 
 def grasp(
@@ -133,14 +141,25 @@ class _Run:
         scale = Scale(self.site.geometry.box_center, self.site.geometry.half_diagonal)
         thick = 2 * max(tip.radius for tip in self.model.fingertips)
         sets, _ = closing_sets(self.points, scale, self.friction, 3, (thick, library.widest + thick), self.rng)
-        fits = [library.seeds(spots_at(self.points, chosen), 1) for chosen in sets[:1500]]
-        order = sorted((seeds[0].off, number) for number, seeds in enumerate(fits) if seeds)
-        near = [number for off, number in order if off <= _TOO_FAR]
-        drafts = self._tried(library, (self._wanted(self.points, sets[number]) for number in near))
-        if drafts:
-            return self._result(drafts)
-        self.outcomes["no three points that close are within reach"] += not near
-        return self.with_pairs()
+        drafts = self._tried(library, self._fitting(library, sets[:_SETS]))
+        return self._result(drafts) if drafts else self.with_pairs()
+
+    def _fitting(self, library: Library, sets: np.ndarray) -> list[_Wanted]:
+        """Sets of points with the seeds that fit, first those that miss least and have least of the hand in the part."""
+        fits = []
+        for number, chosen in enumerate(sets):
+            seeds = library.seeds(spots_at(self.points, chosen), _LOOKED_UP)
+            fits += [(seed.off, number, seed) for seed in seeds if seed.off <= _TOO_FAR]
+        fits.sort(key=lambda fit: fit[:2])
+        if not fits:
+            self.outcomes["no three points that close are within reach"] += 1
+        skin = Skin.of(self.model)
+        ranked = []
+        for done, (off, number, seed) in enumerate(fits[:_COMPARED]):
+            self.progress("looking for ways to reach around the part", done / min(len(fits), _COMPARED))
+            ranked.append((off + skin.depth(seed, self.site.geometry), number, seed))
+        ranked.sort(key=lambda fit: fit[:2])
+        return [replace(self._wanted(self.points, sets[number]), seeds=(seed,)) for _, number, seed in ranked]
 
     def with_pairs(self) -> GraspResult:
         """Two fingertips on all antipodal regions, in turns."""
@@ -184,22 +203,30 @@ class _Run:
         """Drafts of what is reached, until there are enough, or enough was tried."""
         drafts: list[Draft] = []
         families: Counter[tuple[str, ...]] = Counter()
+        failures: Counter[tuple[str, ...]] = Counter()
         for number, one in enumerate(wanted):
             if number >= self.search.tries or self.cancelled():
                 break
-            if families[one.features] >= DRAFTS or len(drafts) >= DRAFTS * self.search.most:
+            if families[one.features] >= DRAFTS or failures[one.features] >= PATIENCE:
                 continue
+            if len(drafts) >= DRAFTS * self.search.most:
+                break
             share = number / self.search.tries
             self.progress(f"{len(drafts)} grasps; trying {', '.join(one.features)}", share)
-            draft = self._first(one, self._seeds(library, one.spots))
+            draft = self._first(one, iter(one.seeds) if one.seeds else self._seeds(library, one.spots))
             if draft is not None:
                 drafts.append(draft)
                 families[one.features] += 1
+                failures[one.features] = 0
+            else:
+                failures[one.features] += 1
         return drafts
 
     def _seeds(self, library: Library, spots: Spots) -> Iterator[Seed]:
-        for seed in library.seeds(spots, _SEEDS if library.count > 2 else 1):
-            yield from _rolled(seed, spots, self.rng) if library.count == 2 else [seed]
+        # a hand with one joint has one way to be as wide as that
+        count = 1 if len(self.model.free) == 1 else _SEEDS
+        for seed in library.seeds(spots, count):
+            yield from _rolled(seed, spots, self.rng)
 
     def _first(self, wanted: _Wanted, seeds: Iterator[Seed]) -> Draft | None:
         """The first seed that leads to a grasp."""
