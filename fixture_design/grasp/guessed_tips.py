@@ -49,8 +49,8 @@ _LOOKED_AT, _AROUND = 30, 0.4
 
 @dataclass(frozen=True, eq=False)
 class _Leaf:
-    """The last link of a finger, its farthest point, the mean direction to the other fingers, and the vertices of what it
-    is welded to, shape (n, 3); all in its frame.
+    """The last link of a finger, its farthest point, the mean direction to the other fingers, and the vertices of what
+    it is welded to, shape (n, 3); all in its frame.
     """
 
     link: LinkGeometry
@@ -226,7 +226,9 @@ def _flat(link: LinkGeometry, towards: Point) -> Fingertip | None:
 
 def _from_joint(link: LinkGeometry, facet: Facet) -> float:
     """How far the middle of a facet is from the link's own frame, which is at its joint [m]."""
-    return float(np.linalg.norm(link.geometry.vertices[np.unique(link.geometry.triangles[facet.triangles])].mean(axis=0)))
+    return float(
+        np.linalg.norm(link.geometry.vertices[np.unique(link.geometry.triangles[facet.triangles])].mean(axis=0))
+    )
 
 
 def _shown(link: LinkGeometry, facet: Facet, towards: Point) -> float:

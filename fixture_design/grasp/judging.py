@@ -94,7 +94,8 @@ def drafted(posture: Posture, site: Site) -> Draft | str:
         return error.problem
     measured = quality(contacts.contacts, contacts.report.reference, contacts.report.length)
     if measured.epsilon == 0:
-        return "the contacts do not close"
+        few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
+        return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
     X_PW = site.part.pose.inverse()
     names = []
     for element in found.layout.elements:
@@ -160,5 +161,3 @@ def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:
         return grasp.closed == "yes", robust, size
 
     return sorted(grasps, key=worth, reverse=True)
-
-

@@ -107,14 +107,14 @@ class Library:
     @cached_property
     def _tree(self) -> tuple[object, np.ndarray, np.ndarray]:
         """The tree, and for each of its leaves the order and the configuration."""
-        from scipy.spatial import cKDTree
+        from scipy.spatial import KDTree
 
         keys, orders, numbers = [], [], []
         for order, tips in enumerate(self.orders):
             keys.append(_distances(self._doubled(self.at, self.facing, tips)))
             orders.append(np.full(len(self.at), order))
             numbers.append(np.arange(len(self.at)))
-        return cKDTree(np.concatenate(keys)), np.concatenate(orders), np.concatenate(numbers)
+        return KDTree(np.concatenate(keys)), np.concatenate(orders), np.concatenate(numbers)
 
     def seeds(self, spots: Spots, most: int) -> list[Seed]:
         """The configurations that fit some spots best, best first."""

@@ -54,11 +54,14 @@ class Reach:
         return cls(model, plant)
 
     def solve(self, spots: Spots, seed: Seed) -> tuple[Weights, Pose] | None:
-        """Joint positions and X_PH with which the seed's fingertips touch at the spots, given in P; None if none is found."""
+        """Joint positions and X_PH with which the seed's fingertips touch at the spots, given in P.
+
+        None if none is found.
+        """
         from pydrake.multibody.inverse_kinematics import InverseKinematics
         from pydrake.solvers import SnoptSolver
 
-        ik = InverseKinematics(self._plant, with_joint_limits=False)
+        ik: Any = InverseKinematics(self._plant, with_joint_limits=False)
         program, q = ik.prog(), ik.q()
         start = self._plant.GetBodyByName(_PART).floating_positions_start()
         mine = [self._plant.GetJointByName(joint.name).position_start() for joint in self.model.joints]
@@ -71,11 +74,12 @@ class Reach:
                 program.AddLinearEqualityConstraint(row, np.array([joint.offset]), both)
         for tip, point, normal in zip(seed.tips, spots.points, spots.normals, strict=True):
             self._prescribe(ik, self.model.fingertips[tip], point, normal)
+        solver: Any = SnoptSolver()
         guess = np.zeros(len(q))
         guess[mine] = np.clip(seed.q, self.model.lower, self.model.upper)
         guess[start : start + 7] = _quaternion_pose(seed.X_PH.inverse())
         program.AddQuadraticErrorCost(np.eye(len(mine)), guess[mine], q[mine])
-        result = guarded(lambda: SnoptSolver().Solve(program, guess), self.model.name)
+        result = guarded(lambda: solver.Solve(program, guess), self.model.name)
         # SNOPT may stop for other reasons where it is; what counts is whether the constraints hold
         if not result.is_success() and result.GetInfeasibleConstraintNames(program, _HOLDS):
             return None
@@ -103,7 +107,9 @@ def _tangent_frame(point: np.ndarray, normal: np.ndarray) -> Any:
     """X_PN with N's z along the normal."""
     from pydrake.math import RigidTransform, RotationMatrix
 
-    return RigidTransform(RotationMatrix.MakeFromOneVector(normal, 2), point)
+    rotation: Any = RotationMatrix
+    made: Any = RigidTransform
+    return made(rotation.MakeFromOneVector(normal, 2), point)
 
 
 def _quaternion_pose(X_HP: Pose) -> np.ndarray:
@@ -117,5 +123,6 @@ def _pose_of(values: np.ndarray) -> Pose:
     from pydrake.common.eigen_geometry import Quaternion
     from pydrake.math import RotationMatrix
 
-    quaternion = values[:4] / np.linalg.norm(values[:4])
-    return Pose(read_only(np.array(RotationMatrix(Quaternion(quaternion)).matrix())), read_only(values[4:]))
+    quaternion: Any = Quaternion
+    turned = RotationMatrix(quaternion(values[:4] / np.linalg.norm(values[:4])))
+    return Pose(read_only(np.array(turned.matrix())), read_only(values[4:]))

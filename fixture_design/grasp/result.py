@@ -64,8 +64,8 @@ class GraspResult:
     """The outcome of a search.
 
     Attributes:
-        satisfied: yes: there is a grasp, proven closed (and it holds the load that was asked for); no: there can be none;
-            undecided: none was found, or its verdict is.
+        satisfied: yes: there is a grasp, proven closed (and it holds the load that was asked for); no: there can be
+            none; undecided: none was found, or its verdict is.
         grasps: the best of each family, best first.
         regions: for hands that grasp with two fingertips, all antipodal regions.
         tried: how many sets of points were tried, and what became of them.

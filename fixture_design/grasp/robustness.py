@@ -51,21 +51,21 @@ def robust_share(
         shift, turn = error.position * rng.standard_normal(3), error.rotation * rng.standard_normal(3)
         X_PW = composed(X_WP, _small(shift, turn, surface.geometry.box_center)).inverse()
         contacts = [
-            contact for tip in tips for contact in _given_way(tip, composed(X_PW, links[tip.link]), surface, posture, error)
+            contact
+            for tip in tips
+            for contact in _given_way(tip, composed(X_PW, links[tip.link]), surface, posture, error)
         ]
         closed += _closes(contacts, surface)
     return closed / POSES
 
 
-def _small(shift: Float[np.ndarray, "3"], turn: Float[np.ndarray, "3"], center: Float[np.ndarray, "3"]) -> Pose:
+def _small(shift: Float[np.ndarray, 3], turn: Float[np.ndarray, 3], center: Float[np.ndarray, 3]) -> Pose:
     """A small displacement of the part in its own frame, turned about its centre."""
     turned = Pose.from_xyz_rpy(np.zeros(3), turn)
     return Pose(turned.rotation, center - turned.rotation @ center + shift)
 
 
-def _given_way(
-    tip: Fingertip, X_PL: Pose, surface: SolidSurface, posture: Posture, error: PoseError
-) -> list[Contact]:
+def _given_way(tip: Fingertip, X_PL: Pose, surface: SolidSurface, posture: Posture, error: PoseError) -> list[Contact]:
     """The contacts of a fingertip that gives way until it touches; in P.
 
     A pad has as many as it has corners on the surface, and in its middle one with the patch of its skin where these
@@ -81,7 +81,7 @@ def _given_way(
 
 def _contacts_at(
     tip: Fingertip,
-    corners: Sequence[Float[np.ndarray, "3"]],
+    corners: Sequence[Float[np.ndarray, 3]],
     X_PL: Pose,
     surface: SolidSurface,
     posture: Posture,
@@ -95,7 +95,10 @@ def _contacts_at(
     for corner in corners:
         distance, foot = surface.nearest(X_PL.points((tip.at + corner)[None])[0])
         size = 0.0 if tip.pad is None else _CORNER * float(np.hypot(*tip.pad))
-        if abs(distance - tip.radius) > (_GIVES if single else _GIVES / 4) + 3 * error.position + 3 * error.rotation * size:
+        if (
+            abs(distance - tip.radius)
+            > (_GIVES if single else _GIVES / 4) + 3 * error.position + 3 * error.rotation * size
+        ):
             continue
         try:
             local = surface.local(foot)

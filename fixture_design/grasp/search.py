@@ -17,7 +17,8 @@ import numpy as np
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Scale
 from fixture_design.errors import UnsupportedError
-from fixture_design.geometry import PartGeometry, load_part
+from fixture_design.geometry import PartGeometry, SurfacePoints, load_part
+from fixture_design.geometry.urdf_tree import composed
 from fixture_design.grasp.hand import Hand
 from fixture_design.grasp.hand_model import HandModel, load_hand
 from fixture_design.grasp.judging import Draft, Site, better_first, drafted, judged, obstacle, with_strength
@@ -37,14 +38,13 @@ from fixture_design.grasp.spots import (
     spots_at,
     spread,
 )
-from fixture_design.geometry.urdf_tree import composed
 from fixture_design.layout import Answer, Part, Pose
 
 #: Words and how much is done, 0 to 1.
 Progress = Callable[[str, float], None]
 
 #: Sets of points tried at most; drafts made of one family, and those of them that are judged.
-TRIES, DRAFTS, JUDGED = 240, 3, 2
+TRIES, DRAFTS, JUDGED = 160, 3, 2
 
 #: Failures in a row after which a family is given up.
 PATIENCE = 24
@@ -131,9 +131,7 @@ class _Run:
         self.outcomes: Counter[str] = Counter()
         self.points = spread(site.geometry, search.seed)
         self.reach = Reach.of(model)
-        self.friction = min(
-            model.hand.friction if tip.friction is None else tip.friction for tip in model.fingertips
-        )
+        self.friction = min(model.hand.friction if tip.friction is None else tip.friction for tip in model.fingertips)
 
     def with_sets(self) -> GraspResult:
         """Three fingertips at a time; if that gives nothing, two."""
@@ -145,7 +143,7 @@ class _Run:
         return self._result(drafts) if drafts else self.with_pairs()
 
     def _fitting(self, library: Library, sets: np.ndarray) -> list[_Wanted]:
-        """Sets of points with the seeds that fit, first those that miss least and have least of the hand in the part."""
+        """Sets of points with the seeds that fit, first those that miss least with least of the hand in the part."""
         fits = []
         for number, chosen in enumerate(sets):
             seeds = library.seeds(spots_at(self.points, chosen), _LOOKED_UP)
@@ -189,13 +187,12 @@ class _Run:
         done = {tuple(draft.features): "closed" for draft in drafts}
         narrow_ones = {region.features for region in narrow}
         facing = tuple(
-            _outcome(region, done, "too wide" if region.features in narrow_ones else "not reached") for region in regions
+            _outcome(region, done, "too wide" if region.features in narrow_ones else "not reached")
+            for region in regions
         )
-        return GraspResult(
-            result.satisfied, result.grasps, facing, result.tried, result.reason, result.notes
-        )
+        return GraspResult(result.satisfied, result.grasps, facing, result.tried, result.reason, result.notes)
 
-    def _wanted(self, points, chosen) -> _Wanted:
+    def _wanted(self, points: SurfacePoints, chosen: np.ndarray) -> _Wanted:
         names = tuple(sorted(feature(self.site.geometry, int(points.facets[number])) for number in chosen))
         return _Wanted(spots_at(points, chosen), names)
 

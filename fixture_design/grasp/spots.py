@@ -116,9 +116,7 @@ def antipodal(points: SurfacePoints, pairs: Int[np.ndarray, "n 2"], friction: fl
     return (width > 0) & (np.minimum(first, second) >= least - DEFAULT.tie)
 
 
-def regions_of(
-    geometry: PartGeometry, points: SurfacePoints, pairs: Int[np.ndarray, "n 2"]
-) -> tuple[Region, ...]:
+def regions_of(geometry: PartGeometry, points: SurfacePoints, pairs: Int[np.ndarray, "n 2"]) -> tuple[Region, ...]:
     """Pairs by the features at their ends, those with most pairs first."""
     names = [feature(geometry, facet) for facet in points.facets.tolist()]
     found: dict[tuple[str, str], list[int]] = {}
@@ -137,7 +135,12 @@ def feature(geometry: PartGeometry, facet: int) -> str:
 
 
 def closing_sets(
-    points: SurfacePoints, scale: Scale, friction: float, count: int, reach: tuple[float, float], rng: np.random.Generator
+    points: SurfacePoints,
+    scale: Scale,
+    friction: float,
+    count: int,
+    reach: tuple[float, float],
+    rng: np.random.Generator,
 ) -> tuple[Int[np.ndarray, "n k"], Weights]:
     """Sets of ``count`` points that close with friction, and by how much, best first.
 

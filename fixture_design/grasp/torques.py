@@ -102,21 +102,25 @@ class Drives:
     def least_effort(self, load: Vector) -> Held | None:
         """The torques that hold a load with the least largest share of their limits; None where none do.
 
-        Drives without a limit count as if theirs were 1.
+        Where no drive has a limit, the least largest torque.
         """
         count = len(self.pushes.owners)
         if not count:
             return None
-        shares = self.torques / np.where(np.isfinite(self.limits), self.limits, 1.0)[:, None]
         from scipy.optimize import linprog
+
+        limited = np.isfinite(self.limits)
+        limits = np.where(limited, self.limits, 1.0)
+        shares = (self.torques / limits[:, None])[limited if limited.any() else slice(None)]
 
         upper = np.vstack([np.hstack([side * shares, -np.ones((len(shares), 1))]) for side in (1.0, -1.0)])
         # a little of the forces themselves, so that nothing squeezes for nothing
         cost = np.append(np.full(count, 1e-6), 1.0)
         equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
         found = linprog(cost, upper, np.zeros(len(upper)), equalities, -load, bounds=(0, None), method="highs")
-        held = found.x is not None and (found.x[-1] <= 1 or not np.isfinite(self.limits).any())
-        return self._held(1.0, found.x[:-1]) if held else None
+        if found.x is None or (limited.any() and found.x[-1] > 1):
+            return None
+        return self._held(1.0, found.x[:-1])
 
     def weakest(self) -> Weakest:
         """The direction of the 26 in which a force through the reference is held worst."""

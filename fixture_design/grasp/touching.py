@@ -135,8 +135,13 @@ def tip_element(
     angle = float(np.arccos(np.clip((-normals @ facing).max(), -1.0, 1.0)))
     allowed = FLAT_ENOUGH if tip.pad is not None else tip.spread
     if angle > allowed:
-        return distance, None, f"looks {np.degrees(angle):.1f} degrees past the surface that it is at, and holds nothing"
+        return (
+            distance,
+            None,
+            f"looks {np.degrees(angle):.1f} degrees past the surface that it is at, and holds nothing",
+        )
     element = Element(tip.name, "finger", read_only(part.pose.points(p_PC[None])[0]), friction=tip.friction)
+    problem = None
     for kind in _kinds(tip, X_WL, part, surface, p_PC):
         tried = replace(element, tip=kind)
         try:
