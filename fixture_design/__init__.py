@@ -33,6 +33,7 @@ The folders state the theory, and each imports only from those to its right::
 * `assembly`: which contacts two parts can have and which can follow which: the contact state graph.
 * `design`: elements added, moved and removed until the conditions hold: exchange search for locators, hitting sets with
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
+* `grasp`: hands in Drake, what they touch as layouts, the search for grasps that close and can be reached.
 * `recognition`: contact states from measured forces and displacements: measurement sets, discriminants, classifier.
 * `io`: files. `viewing`: evidence in words, the sheet to sign, the scene to look at (`viewing.scene`) as a page or a
   picture; `viewing.session` changes a layout in the browser. `batch`: thousands of layouts in worker processes.
@@ -68,10 +69,12 @@ if TYPE_CHECKING:
     from fixture_design.cones import PolyhedralConvexCone
     from fixture_design.contacts import Contact
     from fixture_design.design import DesignResult, Task, design, repair
+    from fixture_design.grasp import GraspResult, grasp
     from fixture_design.io import (
         read_assembly,
         read_classifier,
         read_graph,
+        read_hand,
         read_layout,
         read_log,
         read_task,
@@ -92,6 +95,7 @@ _HOME = {
     "Contact": "contacts",
     "ContactStateGraph": "assembly",
     "DesignResult": "design",
+    "GraspResult": "grasp",
     "Layout": "layout",
     "PolyhedralConvexCone": "cones",
     "Recogniser": "recognition",
@@ -101,11 +105,13 @@ _HOME = {
     "check": "verification",
     "contacts_of": "verification",
     "design": "design",
+    "grasp": "grasp",
     "interactive": "viewing",
     "preview": "viewing",
     "read_assembly": "io",
     "read_classifier": "io",
     "read_graph": "io",
+    "read_hand": "io",
     "read_layout": "io",
     "read_log": "io",
     "read_task": "io",
@@ -126,6 +132,7 @@ __all__ = [
     "Contact",
     "ContactStateGraph",
     "DesignResult",
+    "GraspResult",
     "Layout",
     "PolyhedralConvexCone",
     "Recogniser",
@@ -136,11 +143,13 @@ __all__ = [
     "check",
     "contacts_of",
     "design",
+    "grasp",
     "interactive",
     "preview",
     "read_assembly",
     "read_classifier",
     "read_graph",
+    "read_hand",
     "read_layout",
     "read_log",
     "read_task",

@@ -220,3 +220,9 @@ RESERVE = 0.05
 #: Nothing is proved impossible with coefficients of friction below this, that are not zero [-]: linear programs lose
 #: them beside ones, and the pushes that they need are beyond anything.
 LEAST_FRICTION = 1e-7
+
+#: Fingertips and links this near to the part touch it [m]: joint positions and tip radii are not known better.
+FINGER_GAP = 1e-4
+
+#: A pad lies flat if it is tilted by less than this [rad]: its skin gives way that much.
+FLAT_ENOUGH = 0.02

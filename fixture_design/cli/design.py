@@ -3,11 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import sys
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +10,7 @@ import typer
 
 from fixture_design.cli.design_report import design_in_words
 from fixture_design.cli.exit_codes import ExitCode, of_answer
+from fixture_design.cli.long_work import interruptible, shown
 from fixture_design.cli.messages import say
 from fixture_design.design import DesignResult, Task
 from fixture_design.errors import FileFormatError, InputError, UnsupportedError
@@ -58,16 +54,16 @@ def design(
     from fixture_design.design import design as design_layout  # noqa: PLC0415 - after the arguments are known good
     from fixture_design.design import repair  # noqa: PLC0415 - likewise
 
-    with _interruptible() as cancelled:
+    with interruptible() as cancelled:
         try:
             if isinstance(task, Layout):
-                result = repair(task, seed=seed, progress=_shown, cancelled=cancelled)
+                result = repair(task, seed=seed, progress=shown, cancelled=cancelled)
             else:
-                result = design_layout(task, seed=seed, progress=_shown, cancelled=cancelled)
+                result = design_layout(task, seed=seed, progress=shown, cancelled=cancelled)
         except InputError as error:
             raise error.within(task_or_part) from error
         finally:
-            _shown("", 1.0)
+            shown("", 1.0)
         _write(result, task, out, urdf, csv)
         _report(result, out, as_json)
         raise typer.Exit(ExitCode.INTERRUPTED if cancelled() else of_answer(result.satisfied))
@@ -92,33 +88,6 @@ def _check_target(path: Path | None, task: Task | Layout) -> None:
             raise FileFormatError("this would overwrite an input", source=path, expected="another name")
     if not path.absolute().parent.is_dir():
         raise FileFormatError("the folder to write to is not there", source=path, expected="an existing folder")
-
-
-@contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C once asks for the best so far; twice ends the program as ever."""
-    asked = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield asked.is_set
-        return
-    before = signal.getsignal(signal.SIGINT)
-
-    def ask(number: int, frame: object) -> None:
-        asked.set()
-        signal.signal(signal.SIGINT, before)
-
-    signal.signal(signal.SIGINT, ask)
-    try:
-        yield asked.is_set
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def _shown(words: str, part: float) -> None:
-    """Progress on stderr, in one line that the next one replaces; nothing where stderr is a file."""
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\033[K{words}" + (f" ({part:.0%})" if words else ""))
-        sys.stderr.flush()
 
 
 def _write(result: DesignResult, task: Task | Layout, out: Path | None, urdf: Path | None, csv: Path | None) -> None:

@@ -14,6 +14,7 @@ from fixture_design.cli.batch import batch
 from fixture_design.cli.classifier import classifier
 from fixture_design.cli.design import design
 from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.grasp import grasp
 from fixture_design.cli.interactive import interactive
 from fixture_design.cli.messages import say, say_internal_error
 from fixture_design.cli.preview import preview
@@ -39,6 +40,7 @@ app.command()(batch)
 
 app.command()(preview)
 app.command()(interactive)
+app.command()(grasp)
 app.command()(states)
 app.command()(classifier)
 app.command()(recognize)

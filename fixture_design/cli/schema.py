@@ -9,9 +9,11 @@ import typer
 
 from fixture_design.io import json_schema
 
+_KINDS = "assembly, classifier, graph, hand, layout, task or verdict"
+
 
 def schema(
-    name: Annotated[str, typer.Argument(help="assembly, classifier, graph, layout, task or verdict", metavar="NAME")],
+    name: Annotated[str, typer.Argument(help=_KINDS, metavar="NAME")],
 ) -> None:
     """Print the JSON Schema of a file kind."""
     typer.echo(json.dumps(json_schema(name), indent=2))

@@ -92,7 +92,11 @@ def placed_geometry(body: Body, X_WP: Pose) -> PartGeometry:
     translation = X_PW.points(body.pose.translation[None])[0]
     if np.array_equal(rotation, np.eye(3)) and not translation.any():
         return geometry
-    X_PB = Pose(read_only(rotation), read_only(translation))
+    return moved_geometry(geometry, Pose(read_only(rotation), read_only(translation)))
+
+
+def moved_geometry(geometry: PartGeometry, X_PB: Pose) -> PartGeometry:
+    """A geometry given in B, in P."""
     vertices = X_PB.points(geometry.vertices)
     # a product of rotations leaves 1e-17 where it should leave nothing
     vertices = np.where(np.abs(vertices) <= 4 * ROUND_OFF * geometry.half_diagonal, 0.0, vertices)

@@ -19,17 +19,21 @@ from fixture_design.io.verdict_record import error_record, verdict_to_dict
 
 if TYPE_CHECKING:
     from fixture_design.io.classifier_file import classifier_to_dict, read_classifier, write_classifier
+    from fixture_design.io.hand_file import MODEL_ENDINGS, read_hand
     from fixture_design.io.log_file import read_log
 
 #: Names that are loaded when first asked for: a tenth of any start otherwise.
 _LATER = {
+    "MODEL_ENDINGS": "hand_file",
     "classifier_to_dict": "classifier_file",
     "read_classifier": "classifier_file",
+    "read_hand": "hand_file",
     "read_log": "log_file",
     "write_classifier": "classifier_file",
 }
 
 __all__ = [
+    "MODEL_ENDINGS",
     "TASK_ENDINGS",
     "ContentError",
     "Document",
@@ -50,6 +54,7 @@ __all__ = [
     "read_classifier",
     "read_document",
     "read_graph",
+    "read_hand",
     "read_layout",
     "read_log",
     "read_task",

@@ -15,6 +15,7 @@ _KINDS = {
     "assembly": ("an assembly", "states"),
     "graph": ("a contact-state graph", "classifier"),
     "classifier": ("a classifier", "recognize"),
+    "hand": ("a hand", "grasp"),
     "verdict": ("a verdict, which is a result", "batch --against"),
 }
 

@@ -12,7 +12,7 @@ from fixture_design.io.task_records import TaskRecord
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-_KINDS = ("assembly", "classifier", "graph", "layout", "task", "verdict")
+_KINDS = ("assembly", "classifier", "graph", "hand", "layout", "task", "verdict")
 
 
 def schema_names() -> list[str]:
@@ -21,7 +21,7 @@ def schema_names() -> list[str]:
 
 
 def json_schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of a kind of file: "assembly", "classifier", "graph", "layout", "task" or "verdict".
+    """The JSON Schema of a kind of file: "assembly", "classifier", "graph", "hand", "layout", "task" or "verdict".
 
     A schema tells keys, types and ranges; what depends on several keys (numbers of coordinates, names) only reading
     a file tells.
@@ -58,6 +58,10 @@ def _record(name: str) -> Any:
         from fixture_design.io.graph_records import GraphRecord  # noqa: PLC0415 - as above
 
         return GraphRecord
+    if name == "hand":
+        from fixture_design.io.hand_records import HandRecord  # noqa: PLC0415 - as above
+
+        return HandRecord
     from fixture_design.io.verdict_schema import FailureRecord, VerdictRecord  # noqa: PLC0415 - 20 ms of any start
 
     return VerdictRecord | FailureRecord

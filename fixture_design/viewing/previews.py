@@ -15,6 +15,7 @@ from fixture_design.assembly import ContactStateGraph
 from fixture_design.design import DesignResult
 from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.geometry.input_files import input_files
+from fixture_design.grasp.result import Grasp, GraspResult
 from fixture_design.io import read_graph, read_layout
 from fixture_design.io.documents import read_document
 from fixture_design.io.text_file import write_bytes, write_text
@@ -80,18 +81,18 @@ class Preview:
 
 
 def preview(
-    thing: Layout | DesignResult | ContactStateGraph | str | Path,
+    thing: Layout | DesignResult | Grasp | GraspResult | ContactStateGraph | str | Path,
     verdict: Verdict | None = None,
     show: str | None = None,
 ) -> Preview:
-    """A preview of a layout, of what `design` found, of a contact-state graph in the plane, or of a file of these.
+    """A preview of a layout, of what `design` or `grasp` found, of a contact-state graph in the plane, or of a file.
 
     Args:
         verdict: of the layout, where it is known already; else it is verified.
         show: the answer to begin with, as "locators:form_closure"; by default the one that matters most.
 
     Raises:
-        InputError: the file or the layout cannot be used; a design that found no layout.
+        InputError: the file or the layout cannot be used; a search that found nothing.
         UnsupportedError: a graph in space.
         UnknownNameError: ``show`` is no answer that has something to see.
     """
@@ -106,6 +107,18 @@ def preview(
         if thing.layout is None:
             raise InputError(f"the design has no layout to show: {thing.reason or 'none was found'}")
         return preview(thing.layout, thing.verdict, show)
+    if isinstance(thing, GraspResult):
+        if not thing.grasps:
+            raise InputError(f"there is no grasp to show: {thing.reason or 'none was found'}")
+        return preview(thing.grasps[0], show=show)
+    if isinstance(thing, Grasp):
+        from fixture_design.viewing.hand_drawing import with_hand  # noqa: PLC0415 - only for those who have hands
+
+        held = preview(thing.layout, thing.verdict, show)
+        assert isinstance(held.shown, Scene)
+        hand = thing.posture.model.hand
+        inputs = (*held.inputs, hand.model, *((hand.source,) if hand.source is not None else ()))
+        return Preview(with_hand(held.shown, thing.posture), inputs)
     from fixture_design.verification import verify  # noqa: PLC0415 - only where nobody has verified yet
 
     inputs = tuple(given.file for given in input_files(thing))

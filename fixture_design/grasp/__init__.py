@@ -1,0 +1,78 @@
+"""Grasps: the same theory with a hand. A grasp is a fixture with fingers.
+
+`hand` has the nouns, `hand_model` a hand that can be moved, `touching` the layout that it makes of a part; `quality`
+and `torques` say how good that is; `search` finds grasps. All of it is loaded when it is first asked for.
+"""
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fixture_design.grasp.hand import Fingertip, Hand, HandError, JointRule
+    from fixture_design.grasp.hand_model import HandModel, load_hand
+    from fixture_design.grasp.hybrid import hybrid_sets
+    from fixture_design.grasp.judging import grasp_at
+    from fixture_design.grasp.posture import Posture
+    from fixture_design.grasp.quality import Quality
+    from fixture_design.grasp.result import Grasp, GraspResult
+    from fixture_design.grasp.robustness import PoseError
+    from fixture_design.grasp.search import Search, grasp
+    from fixture_design.grasp.touching import Touching, touching
+
+_HOME = {
+    "Fingertip": "hand",
+    "Grasp": "result",
+    "GraspResult": "result",
+    "Hand": "hand",
+    "HandError": "hand",
+    "HandModel": "hand_model",
+    "JointRule": "hand",
+    "PoseError": "robustness",
+    "Posture": "posture",
+    "Quality": "quality",
+    "Search": "search",
+    "Touching": "touching",
+    "grasp": "search",
+    "grasp_at": "judging",
+    "hybrid_sets": "hybrid",
+    "load_hand": "hand_model",
+    "touching": "touching",
+}
+
+__all__ = [
+    "Fingertip",
+    "Grasp",
+    "GraspResult",
+    "Hand",
+    "HandError",
+    "HandModel",
+    "JointRule",
+    "PoseError",
+    "Posture",
+    "Quality",
+    "Search",
+    "Touching",
+    "grasp",
+    "grasp_at",
+    "hybrid_sets",
+    "load_hand",
+    "touching",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+
+
+class _Callable(ModuleType):
+    """The package, which `fd.grasp` is once anything has imported it, can be called like the function."""
+
+    def __call__(self, *given: Any, **named: Any) -> Any:
+        return import_module(f"{__name__}.search").grasp(*given, **named)
+
+
+sys.modules[__name__].__class__ = _Callable

@@ -1,0 +1,163 @@
+"""From a hand in a place to a grasp: what it runs into, what it touches, whether that closes, and how well."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fixture_design.arrays import Point, Vector
+from fixture_design.errors import GeometryError
+from fixture_design.geometry import PartGeometry, mass_of
+from fixture_design.geometry.features import features_of
+from fixture_design.geometry.surface import SolidSurface
+from fixture_design.geometry.urdf_tree import composed
+from fixture_design.grasp.hand import Fingertip
+from fixture_design.grasp.posture import Posture
+from fixture_design.grasp.quality import Quality, quality
+from fixture_design.grasp.result import Grasp
+from fixture_design.grasp.robustness import PoseError, robust_share
+from fixture_design.grasp.spots import feature
+from fixture_design.grasp.torques import Drives
+from fixture_design.grasp.touching import Touching, runs_into, touching
+from fixture_design.layout import Part, element_name
+from fixture_design.tolerances import FINGER_GAP
+from fixture_design.verification import contacts_of, verify
+from fixture_design.verification.found import FoundContacts
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """Where grasps are looked for.
+
+    Attributes:
+        surface: of the part's geometry.
+        center: centre of mass in W [m].
+        table: height of a table in W that the hand must stay above [m]; None without one.
+    """
+
+    part: Part
+    geometry: PartGeometry
+    surface: SolidSurface
+    center: Point
+    table: float | None = None
+
+    @classmethod
+    def of(cls, part: Part, geometry: PartGeometry, table: float | None = None) -> Site:
+        # the centre is the same however heavy the part is
+        mass = mass_of(part if part.mass is not None else replace(part, mass=1.0), geometry)
+        assert mass is not None
+        center = mass.center
+        return cls(part, geometry, SolidSurface(geometry), part.pose.points(center[None])[0], table)
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """A grasp before its verdict: closed as far as numbers tell."""
+
+    posture: Posture
+    touching: Touching
+    found: FoundContacts
+    features: tuple[str, ...]
+    quality: Quality
+
+
+def obstacle(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> str | None:
+    """What a hand runs into: itself, the table, or the part with a link; None if nothing.
+
+    Links of the fingertips that are to touch may do so.
+    """
+    pair = posture.model.collides_with_itself(posture.q)
+    if pair is not None:
+        return "the hand runs into itself"
+    poses = posture.links()
+    if site.table is not None:
+        for name, link in posture.model.links.items():
+            if poses[name].points(link.geometry.vertices)[:, 2].min() < site.table - FINGER_GAP:
+                return "the hand runs into the table"
+    X_PW, solid = site.part.pose.inverse(), features_of(site.geometry).solid
+    for name, link in posture.model.links.items():
+        if runs_into(link, composed(X_PW, poses[name]), solid, FINGER_GAP):
+            return "a fingertip is in the part" if name in {tip.link for tip in tips} else f"{name} runs into the part"
+    return None
+
+
+def drafted(posture: Posture, site: Site) -> Draft | str:
+    """The grasp that a hand makes where it is, or why it is none."""
+    found = touching(posture, site.part, site.geometry)
+    if not (found.layout.elements or found.layout.contacts):
+        return found.notes[0] if found.notes else "nothing touches"
+    try:
+        contacts = contacts_of(found.layout, site.geometry)
+    except GeometryError as error:
+        return error.problem
+    measured = quality(contacts.contacts, contacts.report.reference, contacts.report.length)
+    if measured.epsilon == 0:
+        few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
+        return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
+    X_PW = site.part.pose.inverse()
+    names = []
+    for element in found.layout.elements:
+        facets = site.surface.facets_at(site.surface.foot(X_PW.points(element.at[None])[0])[1])
+        names.append(feature(site.geometry, int(facets[0])))
+    return Draft(posture, found, contacts, tuple(sorted(names)), measured)
+
+
+def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Grasp:
+    """The grasp with its verdict, and how robust it is.
+
+    Args:
+        error: of the part's pose; None: robustness is not asked for.
+    """
+    posture, layout = draft.posture, draft.touching.layout
+    verdict = verify(layout, found=draft.found, sets=False)
+    touching_names = {element_name(element.name) for element in layout.elements}
+    tips = [tip for tip in posture.model.fingertips if tip.name in touching_names]
+    robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
+    return Grasp(
+        posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
+        notes=draft.touching.notes,
+    )  # fmt: skip
+
+
+def with_strength(grasp: Grasp, load: Vector | None) -> Grasp:
+    """The grasp with what its drives hold: in the worst direction, and of a load.
+
+    Args:
+        load: a wrench on the part about its centre of mass, shape (6,) [N, N m].
+    """
+    drives = Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
+    held = None if load is None else drives.least_effort(load)
+    notes = grasp.notes
+    if load is not None and held is None:
+        notes = (*notes, "the drives do not hold the load that was asked for")
+    return replace(grasp, weakest=drives.weakest(), held=held, notes=notes)
+
+
+def grasp_at(posture: Posture, part: Part, geometry: PartGeometry, load: Vector | None = None) -> Grasp:
+    """The grasp that a hand makes at given joint positions and pose, whatever it is worth.
+
+    What overlaps is said in its notes.
+
+    Raises:
+        ContactError: nothing touches.
+    """
+    site = Site.of(part, geometry)
+    found = touching(posture, part, geometry)
+    contacts = contacts_of(found.layout, geometry)
+    measured = quality(contacts.contacts, contacts.report.reference, contacts.report.length)
+    inside = tuple(f"{name} is {depth * 1000:.3g} mm inside the part" for name, depth in found.overlaps.items())
+    draft = Draft(posture, replace(found, notes=(*found.notes, *inside)), contacts, (), measured)
+    return with_strength(judged(draft, site, PoseError(), 0), load)
+
+
+def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:
+    """Closed ones first, then by robustness, in steps of a tenth, then by epsilon."""
+
+    def worth(grasp: Grasp) -> tuple[bool, float, float]:
+        robust = 0.0 if grasp.robust is None else float(np.round(grasp.robust, 1))
+        size = grasp.quality.least_weight if grasp.quality.epsilon is None else grasp.quality.epsilon
+        return grasp.closed == "yes", robust, size
+
+    return sorted(grasps, key=worth, reverse=True)

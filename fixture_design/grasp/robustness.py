@@ -1,0 +1,120 @@
+"""How well a grasp stands errors of the part's pose: in which share of them the fingers still close.
+
+The part is moved a little at random while the hand stays; every fingertip then gives way along its normal, until it
+touches what is nearest. Of pads the corners are looked at, which give way to a small tilt. Closed is what
+`design` calls so while it searches: rows of the friction cones' edges that close.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from fixture_design.cones.kernel import closure_test
+from fixture_design.contacts import Contact, torsion_of_patch, unit_normal
+from fixture_design.errors import GeometryError, UnsupportedError
+from fixture_design.geometry.surface import SolidSurface
+from fixture_design.geometry.urdf_tree import composed
+from fixture_design.grasp.hand import Fingertip
+from fixture_design.grasp.posture import Posture
+from fixture_design.grasp.wrenches import pushes_of
+from fixture_design.layout import Pose
+
+#: Poses looked at.
+POSES = 32
+
+#: Corners of a pad that count: a little inside of it [-].
+_CORNER = 0.4
+
+#: A pad gives way to a tilt up to this [rad], everything gives way up to this much besides the error itself [m].
+_TILT, _GIVES = 0.15, 2e-3
+
+
+@dataclass(frozen=True)
+class PoseError:
+    """Standard deviations of the part's position [m], each coordinate, and of its rotation [rad], about each axis."""
+
+    position: float = 1e-3
+    rotation: float = 0.02
+
+
+def robust_share(
+    posture: Posture, X_WP: Pose, surface: SolidSurface, tips: Sequence[Fingertip], error: PoseError, seed: int
+) -> float:
+    """The share of pose errors at which some fingertips still close; 0 without any."""
+    rng = np.random.default_rng(seed)
+    links, closed = posture.links(), 0
+    for _ in range(POSES):
+        shift, turn = error.position * rng.standard_normal(3), error.rotation * rng.standard_normal(3)
+        X_PW = composed(X_WP, _small(shift, turn, surface.geometry.box_center)).inverse()
+        contacts = [
+            contact
+            for tip in tips
+            for contact in _given_way(tip, composed(X_PW, links[tip.link]), surface, posture, error)
+        ]
+        closed += _closes(contacts, surface)
+    return closed / POSES
+
+
+def _small(shift: Float[np.ndarray, 3], turn: Float[np.ndarray, 3], center: Float[np.ndarray, 3]) -> Pose:
+    """A small displacement of the part in its own frame, turned about its centre."""
+    turned = Pose.from_xyz_rpy(np.zeros(3), turn)
+    return Pose(turned.rotation, center - turned.rotation @ center + shift)
+
+
+def _given_way(tip: Fingertip, X_PL: Pose, surface: SolidSurface, posture: Posture, error: PoseError) -> list[Contact]:
+    """The contacts of a fingertip that gives way until it touches; in P.
+
+    A pad has as many as it has corners on the surface, and in its middle one with the patch of its skin where these
+    are fewer than three.
+    """
+    if tip.pad is None:
+        return _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
+    signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+    corners = [_CORNER * (u * tip.pad[0] * tip.sideways + v * tip.pad[1] * tip.across) for u, v in signs]
+    found = _contacts_at(tip, corners, X_PL, surface, posture, error)
+    return found if len(found) >= 3 else found + _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
+
+
+def _contacts_at(
+    tip: Fingertip,
+    corners: Sequence[Float[np.ndarray, 3]],
+    X_PL: Pose,
+    surface: SolidSurface,
+    posture: Posture,
+    error: PoseError,
+) -> list[Contact]:
+    """The contacts of some points of a fingertip, given from its ``at``."""
+    facing = X_PL.vectors(tip.facing[None])[0]
+    single = len(corners) == 1
+    friction = posture.model.hand.friction if tip.friction is None else tip.friction
+    found = []
+    for corner in corners:
+        distance, foot = surface.nearest(X_PL.points((tip.at + corner)[None])[0])
+        size = 0.0 if tip.pad is None else _CORNER * float(np.hypot(*tip.pad))
+        if (
+            abs(distance - tip.radius)
+            > (_GIVES if single else _GIVES / 4) + 3 * error.position + 3 * error.rotation * size
+        ):
+            continue
+        try:
+            local = surface.local(foot)
+        except (GeometryError, UnsupportedError):  # no place to touch: this corner does not count
+            continue
+        normal = unit_normal(local.clauses[0][0])
+        if local.shape != "flat" or normal @ facing > -np.cos(_TILT if tip.pad is not None else tip.spread):
+            continue
+        torsion = torsion_of_patch(tip.soft) if tip.soft is not None and single else 0.0
+        found.append(Contact(tip.name, "finger", foot, ((normal,),), friction, torsion=torsion))
+    return found
+
+
+def _closes(contacts: Sequence[Contact], surface: SolidSurface) -> bool:
+    if not contacts:
+        return False
+    rows = pushes_of(contacts, surface.geometry.box_center).wrenches.copy()
+    rows[:, 3:] /= surface.half_diagonal
+    return closure_test(-rows / np.linalg.norm(rows, axis=1, keepdims=True)).closes is True

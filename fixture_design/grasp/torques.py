@@ -1,0 +1,159 @@
+"""What the drives of a hand must do for the part to hold a load, and the largest load that they allow.
+
+Contact forces x >= 0 on the edges of the friction cones, on the part, balance a load w, and the fingers push them with
+joint torques tau = J^T f (J the contact's point fixed to its link, and its spin for the moments of soft tips):
+
+    W^T x + w = 0,    |T x| <= effort
+
+Joints that follow others load the one that moves them; the hand's own weight is left out. Drives without a limit hold
+anything. The cones are cut to pyramids from inside, so that a load said to be held is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from jaxtyping import Float
+
+from fixture_design.arrays import Point, Vector, Weights
+from fixture_design.contacts import Contact
+from fixture_design.grasp.posture import Posture
+from fixture_design.grasp.wrenches import Pushes, pushes_of
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A load that the drives hold.
+
+    Attributes:
+        factor: of the load that was asked for; inf where nothing limits it.
+        torques: by joint that moves on its own [N m or N]; of the load, or of ``factor`` times it.
+        forces: by element or contact, the force on the part at each contact point, summed, shape (3,) [N].
+    """
+
+    factor: float
+    torques: Mapping[str, float]
+    forces: Mapping[str, Point]
+
+
+@dataclass(frozen=True, eq=False)
+class Weakest:
+    """The direction in which a force through a point is held worst.
+
+    Attributes:
+        force: the largest one held in that direction [N]; inf where drives without a limit hold anything, 0 where there
+            is a direction without any.
+        direction: unit, of the 26 towards faces, edges and corners of a cube.
+    """
+
+    force: float
+    direction: Point
+
+
+@dataclass(frozen=True, eq=False)
+class Drives:
+    """A grasp as its drives see it: pushes, and the torques that each takes.
+
+    Attributes:
+        torques: T, shape (f, m), torques of joints that move on their own for 1 N on each edge.
+        limits: shape (f,).
+        names: of those joints.
+    """
+
+    pushes: Pushes
+    torques: Float[np.ndarray, "f m"]
+    limits: Weights
+    names: tuple[str, ...]
+
+    @classmethod
+    def of(cls, posture: Posture, contacts: Sequence[Contact], links: Mapping[str, str], reference: Point) -> Drives:
+        """Of the contacts that a hand makes; ``links`` tells the link of each element or contact."""
+        pushes, model = pushes_of(contacts, reference), posture.model
+        X_HW = posture.X_WH.inverse()
+        poses = model.poses(posture.q)
+        torques = np.zeros((len(model.free), len(pushes.owners)))
+        for number in sorted(set(pushes.contacts)):
+            edges = np.flatnonzero(np.array(pushes.contacts) == number)
+            link = links[pushes.owners[edges[0]]]
+            p_LC = poses[link].inverse().points(X_HW.points(pushes.points[edges[:1]]))[0]
+            forces, moments = X_HW.vectors(pushes.forces[edges]), X_HW.vectors(pushes.moments[edges])
+            torques[:, edges] = model.jacobian(posture.q, link, p_LC).T @ forces.T
+            torques[:, edges] += model.spin_jacobian(posture.q, link).T @ moments.T
+        names = tuple(model.joints[number].name for number in model.free.tolist())
+        return cls(pushes, torques, model.efforts, names)
+
+    def largest(self, load: Vector) -> Held | None:
+        """The largest multiple of a load, shape (6,) about the reference, that is held; None where none is."""
+        if not len(self.pushes.owners):
+            return None
+        count = len(self.pushes.owners)
+        cost = np.append(np.zeros(count), -1.0)
+        equalities = np.hstack([self.pushes.wrenches.T, load[:, None]])
+        found, bounded = self._solve(cost, equalities, np.zeros(6))
+        if found is None:
+            return None
+        if not bounded:
+            return Held(np.inf, {}, {})
+        return self._held(float(found[-1]), found[:-1])
+
+    def least_effort(self, load: Vector) -> Held | None:
+        """The torques that hold a load with the least largest share of their limits; None where none do.
+
+        Where no drive has a limit, the least largest torque.
+        """
+        count = len(self.pushes.owners)
+        if not count:
+            return None
+        from scipy.optimize import linprog
+
+        limited = np.isfinite(self.limits)
+        limits = np.where(limited, self.limits, 1.0)
+        shares = (self.torques / limits[:, None])[limited if limited.any() else slice(None)]
+
+        upper = np.vstack([np.hstack([side * shares, -np.ones((len(shares), 1))]) for side in (1.0, -1.0)])
+        # a little of the forces themselves, so that nothing squeezes for nothing
+        cost = np.append(np.full(count, 1e-6), 1.0)
+        equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
+        found = linprog(cost, upper, np.zeros(len(upper)), equalities, -load, bounds=(0, None), method="highs")
+        if found.x is None or (limited.any() and found.x[-1] > 1):
+            return None
+        return self._held(1.0, found.x[:-1])
+
+    def weakest(self) -> Weakest:
+        """The direction of the 26 in which a force through the reference is held worst."""
+        worst = Weakest(np.inf, np.array([0.0, 0.0, -1.0]))
+        for corner in product((-1.0, 0.0, 1.0), repeat=3):
+            direction = np.array(corner)
+            if not direction.any():
+                continue
+            direction = direction / np.linalg.norm(direction)
+            held = self.largest(np.append(direction, np.zeros(3)))
+            force = 0.0 if held is None else held.factor
+            if force < worst.force:
+                worst = Weakest(force, direction)
+        return worst
+
+    def _solve(self, cost: Weights, equalities: np.ndarray, sides: Weights) -> tuple[Weights | None, bool]:
+        """The solution, and whether it is bounded."""
+        from scipy.optimize import linprog
+
+        limited = np.isfinite(self.limits)
+        rows = np.hstack([self.torques[limited], np.zeros((int(limited.sum()), 1))])
+        upper, most = np.vstack([rows, -rows]), np.tile(self.limits[limited], 2)
+        found = linprog(
+            cost, upper if len(upper) else None, most if len(upper) else None, equalities, sides,
+            bounds=(0, None), method="highs",
+        )  # fmt: skip
+        if found.status == 3:
+            return np.zeros(len(cost)), False
+        return (None if found.x is None else np.array(found.x)), True
+
+    def _held(self, factor: float, x: Weights) -> Held:
+        torques = dict(zip(self.names, (self.torques @ x).tolist(), strict=True))
+        forces: dict[str, Point] = {}
+        for owner, force in zip(self.pushes.owners, self.pushes.forces * x[:, None], strict=True):
+            forces[owner] = forces.get(owner, np.zeros(3)) + force
+        return Held(factor, torques, forces)
