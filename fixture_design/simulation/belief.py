@@ -1,0 +1,131 @@
+"""Where the fixed parts may be: displacements that agree with the poses of the robot and with what is recognised.
+
+A recognised state says that its pairs touch, and that nothing overlaps; the robot says where the part is. Of many
+displacements of the fixed parts (particles) those stay for which some state that is possible has its pairs closed at
+the robot's pose. So the answer of the recogniser is used as what it is, a set, and the displacements tell in turn which
+of its states is the likely one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fixture_design.arrays import ArrayLike, Mask, Rows, Vector, Weights
+from fixture_design.assembly import ContactStateGraph
+from fixture_design.assembly.contact_geometry import ContactGeometry
+from fixture_design.assembly.geometry_of import geometry_of
+
+#: How far contacts may be from closed: rounded corners, contacts that give, the sensor's delay, standard deviation [m].
+CLOSED = 4e-4
+
+#: Particles, and the share of effective ones below which they are drawn anew.
+_PARTICLES, _FEW = 400, 0.5
+
+#: What drawn particles are moved by, so that they follow what only later samples tell apart: [m, m, rad].
+_MOVED = np.array([1.5e-4, 1e-4, 4e-3])
+
+#: The same where all are wrong, relative to the displacements that were expected at the start [-].
+_LOST = 0.15
+
+#: Gaps of the best particle, relative to `CLOSED`, beyond which all of them are wrong [-].
+_WRONG = 4.0
+
+#: A state with more contacts is believed if it is supported by this share of what the best one is [-].
+_SUPPORTED = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class States:
+    """The states of a graph as rows of a matrix, for all particles at once.
+
+    Attributes:
+        ids, contacts: of the states.  pairs: rows of the pairs that take part.  touching: shape (states, pairs).
+    """
+
+    geometry: ContactGeometry
+    ids: tuple[str, ...]
+    contacts: tuple[tuple[str, ...], ...]
+    pairs: np.ndarray
+    touching: np.ndarray
+
+    @classmethod
+    def of(cls, graph: ContactStateGraph) -> States:
+        geometry = geometry_of(graph.assembly)
+        pairs = np.flatnonzero(geometry.takes_part)
+        names = np.array(geometry.names)[pairs]
+        touching = np.array([np.isin(names, state.contacts) for state in graph.states])
+        ids, contacts = zip(*((state.id, state.contacts) for state in graph.states), strict=True)
+        return cls(geometry, ids, contacts, pairs, touching)
+
+    def rows(self, ids: tuple[str, ...]) -> np.ndarray:
+        return np.flatnonzero(np.isin(np.array(self.ids), ids))
+
+    def gaps(self, q: Rows, rows: np.ndarray) -> Rows:
+        """How far each state is from having its pairs closed without an overlap, shape (n, states) [m]."""
+        distances = self.geometry.equations(q, self.pairs[None]).distances
+        widest = np.where(self.touching[rows][None], distances[:, None], 0.0).max(axis=2)
+        return np.maximum(widest, self.geometry.overlap(q)[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """Particles and their weights.
+
+    Attributes:
+        shifts: displacements [x, y, theta] of the fixed parts, shape (n, 3).  weights: their sum is 1.
+        spread: standard deviations expected at the start, shape (3,).
+    """
+
+    states: States
+    shifts: Rows
+    weights: Weights
+    spread: Vector
+
+    @classmethod
+    def start(cls, graph: ContactStateGraph, spread: ArrayLike, rng: np.random.Generator) -> Belief:
+        """Before anything was touched: no displacement expected, give or take ``spread`` [m, m, rad]."""
+        widths = np.asarray(spread, dtype=np.float64)
+        shifts = widths * rng.normal(size=(_PARTICLES, 3))
+        return cls(States.of(graph), shifts, np.full(_PARTICLES, 1 / _PARTICLES), widths)
+
+    def after(
+        self, pose: Vector, possible: tuple[str, ...], expected: frozenset[str], rng: np.random.Generator
+    ) -> tuple[Belief, str, Vector]:
+        """The belief after a sample, the likely state among the possible ones, and where the fixed parts then are.
+
+        Args:
+            pose: the part's, in the robot's frame.  possible: ids that the recogniser left.
+            expected: ids that are preferred where others are no more likely than `_SUPPORTED` tells.
+        """
+        rows = self.states.rows(possible)
+        gaps = self.states.gaps(relative(self.shifts, pose), rows)
+        best = gaps.min(axis=1)
+        weights = self.weights * np.exp(-0.5 * (best / CLOSED) ** 2) + np.finfo(float).tiny
+        weights /= weights.sum()
+        fits = np.exp(-0.5 * (gaps / CLOSED) ** 2)
+        support = weights @ fits
+        counts = self.states.touching[rows].sum(axis=1)
+        ids = [self.states.ids[row] for row in rows]
+        likely = np.flatnonzero(support >= _SUPPORTED * support.max())
+        chosen = max(likely, key=lambda k: (ids[k] in expected, counts[k], support[k]))
+        share = weights * fits[:, chosen]
+        shift = (share @ self.shifts) / share.sum() if share.sum() > 0 else weights @ self.shifts
+        lost = bool(best.min() > _WRONG * CLOSED)
+        return self._drawn(weights, lost, rng), ids[chosen], shift
+
+    def _drawn(self, weights: Weights, lost: bool, rng: np.random.Generator) -> Belief:
+        count = len(weights)
+        if not lost and 1 / (weights @ weights) > _FEW * count:
+            return replace(self, weights=weights)
+        chosen = np.searchsorted(np.cumsum(weights), (np.arange(count) + rng.uniform()) / count)
+        shifts = self.shifts[np.minimum(chosen, count - 1)] + (_LOST * self.spread if lost else _MOVED) * rng.normal(size=(count, 3))
+        return replace(self, shifts=shifts, weights=np.full(count, 1 / count))
+
+
+def relative(frame: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """Planar poses seen from planar frames, shapes (..., 3): X_FP of X_WF and X_WP."""
+    c, s = np.cos(frame[..., 2]), np.sin(frame[..., 2])
+    x, y = pose[..., 0] - frame[..., 0], pose[..., 1] - frame[..., 1]
+    return np.stack([c * x + s * y, -s * x + c * y, pose[..., 2] - frame[..., 2]], axis=-1)

@@ -1,0 +1,154 @@
+"""One simulated run: the world, its sensor, recognition, and whoever moves the virtual target."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from fixture_design.arrays import ArrayLike, Rows, Vector, Weights
+from fixture_design.assembly import Assembly
+from fixture_design.recognition import Classifier, Log
+from fixture_design.simulation.belief import relative
+from fixture_design.simulation.planar_world import PlanarWorld, add_planar_world
+from fixture_design.simulation.setup import Setup
+from fixture_design.simulation.systems import recognition_system, sensor_system
+from fixture_design.simulation.true_state import true_contacts
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """What a controller is told; never the truth.
+
+    Attributes:
+        time: [s].  pose, velocity: the robot's, shape (3,).
+        wrench: of the sensor, [f; m].  possible: ids of the states that remain possible.
+    """
+
+    time: float
+    pose: Vector
+    velocity: Vector
+    wrench: Vector
+    possible: tuple[str, ...]
+
+
+class Controller(Protocol):
+    """Moves the virtual target of the impedance."""
+
+    def target(self, sample: Sample) -> Vector:
+        """The next target, shape (3,)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run that was simulated.
+
+    Attributes:
+        log: wrenches, displacements and true contacts, a row for each period.  poses: of the part, relative to where
+            the fixed parts really are, shape (n, 3).
+        states: what the recogniser left possible.
+    """
+
+    log: Log
+    poses: Rows
+    states: tuple[tuple[str, ...], ...]
+
+    def first(self, reached: Weights) -> float | None:
+        """When a condition, one number a row, first holds [s]; None: never."""
+        rows = np.flatnonzero(reached)
+        return float(self.log.times[rows[0]]) if len(rows) else None
+
+
+@dataclass(eq=False)
+class Simulation:
+    """A diagram with its simulator; `run` lets a controller move it.
+
+    Attributes:
+        classifier: of the recogniser in the loop.  world: the plant.
+    """
+
+    assembly: Assembly
+    classifier: Classifier
+    setup: Setup
+    world: PlanarWorld
+    _parts: Any = field(repr=False)
+
+    @classmethod
+    def of(
+        cls, assembly: Assembly, classifier: Classifier, setup: Setup, shift: ArrayLike, known: str | None = None
+    ) -> Simulation:
+        """The diagram: plant, sensor, recognition.
+
+        Args:
+            shift: where the fixed parts really are.  known: the state at the start.
+
+        Raises: as `add_planar_world` and `recognition_system`.
+        """
+        from pydrake.systems.analysis import Simulator  # noqa: PLC0415 - Drake where it is used
+        from pydrake.systems.framework import DiagramBuilder  # noqa: PLC0415 - as above
+
+        builder = DiagramBuilder()
+        world = add_planar_world(builder, assembly, setup, shift)
+        sensor = builder.AddSystem(
+            sensor_system(world.wrist, setup.sensor, classifier.signals.length, setup.period)
+        )
+        recognition = builder.AddSystem(recognition_system(classifier, setup.period, known))
+        plant = world.plant
+        builder.Connect(plant.get_reaction_forces_output_port(), sensor.GetInputPort("reactions"))
+        builder.Connect(plant.get_state_output_port(), sensor.GetInputPort("state"))
+        builder.Connect(sensor.GetOutputPort("wrench"), recognition.GetInputPort("wrench"))
+        if classifier.signals.measure != "force":
+            builder.Connect(sensor.GetOutputPort("twist"), recognition.GetInputPort("twist"))
+        simulator = Simulator(builder.Build())
+        return cls(assembly, classifier, setup, world, (simulator, sensor, recognition))
+
+    def run(
+        self,
+        controller: Controller,
+        start: ArrayLike,
+        duration: float,
+        every: int = 2,
+        until: Callable[[np.ndarray], bool] = lambda _: False,
+    ) -> Run:
+        """Simulates from rest.
+
+        Args:
+            start: the part's pose, shape (3,).  duration: [s].  every: periods between two targets.
+            until: ends the run, of the part's pose relative to where the fixed parts really are.
+        """
+        simulator, sensor, recognition = self._parts
+        plant, context = self.world.plant, simulator.get_mutable_context()
+        of_plant = plant.GetMyMutableContextFromRoot(context)
+        plant.SetPositions(of_plant, np.asarray(start, dtype=np.float64))
+        target = plant.get_desired_state_input_port(_model(plant)).FixValue(
+            of_plant, np.concatenate([np.asarray(start, dtype=np.float64), np.zeros(3)])
+        )
+        of_sensor, of_recognition = (system.GetMyContextFromRoot(context) for system in (sensor, recognition))
+        rows: list[tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...], tuple[str, ...]]] = []
+        steps = round(duration / self.setup.period)
+        times = self.setup.period * np.arange(1, steps + 1)
+        for k, time in enumerate(times.tolist()):
+            simulator.AdvanceTo(time)
+            state = plant.GetPositionsAndVelocities(of_plant)
+            wrench, twist = (sensor.GetOutputPort(name).Eval(of_sensor) for name in ("wrench", "twist"))
+            possible = recognition.possible(of_recognition)
+            truth = true_contacts(self.world, plant.get_contact_results_output_port().Eval(of_plant), state[2])
+            pose = relative(self.world.shift, state[:3])
+            rows.append((wrench, twist, pose, truth, possible))
+            if until(pose):
+                break
+            if k % every == 0:
+                sample = Sample(time, state[:3], state[3:], wrench, possible)
+                wanted = np.concatenate([controller.target(sample), np.zeros(3)])
+                target.GetMutableData().set_value(wanted)
+        wrenches, twists, poses, truths, states = zip(*rows, strict=True)
+        return Run(Log.of(times[: len(rows)], wrenches, twists, truths), np.array(poses), tuple(states))
+
+
+def _model(plant: Any) -> Any:
+    from pydrake.multibody.tree import default_model_instance  # noqa: PLC0415 - as above
+
+    return default_model_instance()
