@@ -19,7 +19,7 @@ from fixture_design.io.verdict_record import error_record, verdict_to_dict
 
 if TYPE_CHECKING:
     from fixture_design.io.classifier_file import classifier_to_dict, read_classifier, write_classifier
-    from fixture_design.io.log_file import read_log
+    from fixture_design.io.log_file import read_log, write_log
 
 #: Names that are loaded when first asked for: a tenth of any start otherwise.
 _LATER = {
@@ -27,6 +27,7 @@ _LATER = {
     "read_classifier": "classifier_file",
     "read_log": "log_file",
     "write_classifier": "classifier_file",
+    "write_log": "log_file",
 }
 
 __all__ = [
@@ -62,6 +63,7 @@ __all__ = [
     "write_graph",
     "write_graphml",
     "write_layout",
+    "write_log",
     "write_urdf",
 ]
 

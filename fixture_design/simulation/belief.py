@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fixture_design.arrays import ArrayLike, Mask, Rows, Vector, Weights
+from fixture_design.arrays import ArrayLike, Rows, Vector, Weights
 from fixture_design.assembly import ContactStateGraph
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.geometry_of import geometry_of
@@ -120,7 +120,8 @@ class Belief:
         if not lost and 1 / (weights @ weights) > _FEW * count:
             return replace(self, weights=weights)
         chosen = np.searchsorted(np.cumsum(weights), (np.arange(count) + rng.uniform()) / count)
-        shifts = self.shifts[np.minimum(chosen, count - 1)] + (_LOST * self.spread if lost else _MOVED) * rng.normal(size=(count, 3))
+        widths = _LOST * self.spread if lost else _MOVED
+        shifts = self.shifts[np.minimum(chosen, count - 1)] + widths * rng.normal(size=(count, 3))
         return replace(self, shifts=shifts, weights=np.full(count, 1 / count))
 
 

@@ -45,6 +45,7 @@ class ClosedLoop:
 
     Attributes:
         leg: of the plan, which it is on.  history: (time, state, leg) whenever one of them changed.
+        surprises: how often another leg was taken since a state was not expected, or a leg took too long.
     """
 
     plan: Plan
@@ -54,9 +55,10 @@ class ClosedLoop:
     pace: Pace = field(default_factory=Pace)
     leg: int = 0
     history: list[tuple[float, str, int]] = field(default_factory=list)
-    _offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    surprises: int = 0
     _surprised: float = 0.0
     _since: float = 0.0
+    _unpressed: Vector | None = None
 
     def __post_init__(self) -> None:
         geometry = self.belief.states.geometry
@@ -64,39 +66,34 @@ class ClosedLoop:
         robot = self.robot
         self._stiffness = np.array([robot.stiffness, robot.stiffness, robot.turning_stiffness]) / self._scale**2
 
+    @property
+    def start(self) -> Vector:
+        """The first goal of the plan."""
+        return self.plan.legs[0].goal
+
     def target(self, sample: Sample) -> Vector:
         """The next virtual target, in the robot's frame, shape (3,)."""
         expected = self.plan.legs[self.leg].allowed
         self.belief, state, shift = self.belief.after(sample.pose, sample.possible, expected, self.rng)
         q = relative(shift, sample.pose)
         self._choose_leg(sample.time, state, q)
-        control, pressed = self._control(state, q)
+        control, press = self._control(state, q)
         wish = self._scale * (self.plan.legs[self.leg].goal - q)
-        length = float(np.linalg.norm(wish))
-        step = wish * min(1.0, self.pace.speed * self.pace.period / max(length, np.finfo(float).tiny))
-        moved, force = commanded_pair(control, step, pressed)
-        self._offset = self._limited(self._admissible(control, self._offset_now(sample, shift) + moved))
-        ahead = (self._offset + force / self._stiffness) / self._scale
-        self._before = sample.pose
-        target = sample.pose + _turned(ahead, shift[2])
-        self._target = sample.pose + _turned(self._offset / self._scale, shift[2])
-        return target
+        share = self.pace.speed * self.pace.period / max(float(np.linalg.norm(wish)), np.finfo(float).tiny)
+        moved, force = commanded_pair(control, wish * min(1.0, share), press)
+        ahead = self._limited(_admissible(control, self._ahead(sample.pose, shift) + moved))
+        self._unpressed = sample.pose + _turned(ahead / self._scale, shift[2])
+        return self._unpressed + _turned(force / self._stiffness / self._scale, shift[2])
 
-    _before: Vector | None = None
-    _target: Vector | None = None
-
-    def _offset_now(self, sample: Sample, shift: Vector) -> np.ndarray:
-        """How far the target without its press is ahead of the part now, scaled, as the fixed parts lie."""
-        if self._target is None:
+    def _ahead(self, pose: Vector, shift: Vector) -> np.ndarray:
+        """How far the latest target, without its press, is ahead of the part now; scaled, as the fixed parts lie."""
+        if self._unpressed is None:
             return np.zeros(3)
-        return self._scale * _turned(self._target - sample.pose, -shift[2])
-
-    def _admissible(self, control: HybridControl, offset: np.ndarray) -> np.ndarray:
-        cones = [convert(cone) for cone in control.displacements]
-        return min((nearest_in(cone, offset) for cone in cones), key=lambda x: float(np.linalg.norm(x - offset)))
+        return self._scale * _turned(self._unpressed - pose, -shift[2])
 
     def _limited(self, offset: np.ndarray) -> np.ndarray:
-        return offset * min(1.0, self.pace.most_force / max(float(np.abs(offset * self._stiffness).max()), 1e-12))
+        pull = float(np.abs(offset * self._stiffness).max())
+        return offset * min(1.0, self.pace.most_force / max(pull, np.finfo(float).tiny))
 
     def _control(self, state: str, q: Vector) -> tuple[HybridControl, np.ndarray]:
         """A and F of a state near a configuration, scaled, and the wished press on all its contacts."""
@@ -108,20 +105,27 @@ class ClosedLoop:
         return control, self.plan.legs[self.leg].press * rows.sum(axis=0)
 
     def _choose_leg(self, time: float, state: str, q: Vector) -> None:
-        leg, before = self.plan.legs[self.leg], self.leg
-        apart = float(np.linalg.norm(self._scale * (leg.goal - q)))
-        if apart <= self.pace.near and self.leg + 1 < len(self.plan.legs):
-            self.leg += 1
-        elif time - self._since > self.pace.patience and self.leg + 1 < len(self.plan.legs):
-            self.leg = 0
-        else:
-            self._surprised = 0.0 if state in leg.allowed else self._surprised + self.pace.period
-            if self._surprised > self.pace.surprised:
-                self.leg = self.plan.joining(state, self.leg)
-        if self.leg != before:
-            self._surprised, self._since = 0.0, time
+        """The next leg where the goal is reached; another one after a surprise, or where patience ends."""
+        leg, last = self.plan.legs[self.leg], self.leg + 1 == len(self.plan.legs)
+        self._surprised = 0.0 if state in leg.allowed else self._surprised + self.pace.period
+        chosen = self.leg
+        if not last and float(np.linalg.norm(self._scale * (leg.goal - q))) <= self.pace.near:
+            chosen = self.leg + 1
+        elif self._surprised > self.pace.surprised:
+            chosen = self.plan.joining(state, self.leg)
+        elif time - self._since > self.pace.patience:
+            chosen = 0
+        self.surprises += chosen < self.leg
+        if chosen != self.leg or chosen == 0 < self._surprised:
+            self._surprised, self._since, self.leg = 0.0, time, chosen
         if not self.history or self.history[-1][1:] != (state, self.leg):
             self.history.append((time, state, self.leg))
+
+
+def _admissible(control: HybridControl, offset: np.ndarray) -> np.ndarray:
+    """The nearest displacement in A: contacts are pressed by the force alone, not by a target that ran into them."""
+    nearest = [nearest_in(convert(cone), offset) for cone in control.displacements]
+    return min(nearest, key=lambda found: float(np.linalg.norm(found - offset)))
 
 
 def _turned(vector: np.ndarray, angle: float) -> np.ndarray:

@@ -41,7 +41,7 @@ class Plan:
     legs: tuple[Leg, ...]
 
     def joining(self, state: str, before: int) -> int:
-        """The leg to go on with in a state that the present one does not expect: the last one that does, else the first."""
+        """The leg to go on with in a state that the present one does not expect: the last that does, else the first."""
         fits = [k for k in range(before + 1) if state in self.legs[k].allowed]
         return fits[-1] if fits else 0
 
@@ -116,7 +116,9 @@ def _require_way(graph: ContactStateGraph, start: str, leg: Leg, number: int) ->
 
     ways = graph.networkx().subgraph(leg.allowed | {start})
     if not networkx.has_path(ways, start, leg.state):
-        raise AssemblyError(f"leg {number}: the graph has no way from {start} to {leg.state} within {sorted(leg.allowed)}")
+        raise AssemblyError(
+            f"leg {number}: the graph has no way from {start} to {leg.state} within {sorted(leg.allowed)}"
+        )
 
 
 #: Beyond the angle at which a leaning peg's right corner reaches the edge, and short of it [rad].
@@ -148,7 +150,7 @@ def corner_first(graph: ContactStateGraph, depth: float = 0.025, above: float = 
             Wanted((half * float(np.cos(tilt)), above, tilt)),
             Wanted((half / 4, -half / 2, tilt), (left, under), press=6.0),
             Wanted((half / 8, -half / 3, edge + _SHORT), (left, under), press=6.0),
-            Wanted((half / 16, -half / 2, edge / 2), (left, right), press=6.0),
+            Wanted((0.0, -hole / 2 * float(np.sin(edge)), edge / 2), (left,), (under, right), press=6.0),
             Wanted((0.0, -half / 2, 0.0), (), walls, press=2.0),
             Wanted((0.0, -depth, 0.0), (), walls, press=0.5),
         ],

@@ -1,4 +1,4 @@
-"""Bodies that are rectangles: Drake's boxes are exact where its convex hulls are not (a ball on a hull's vertex hangs)."""
+"""Bodies that are rectangles: Drake's boxes are exact where its hulls are not (a ball on a hull's vertex hangs)."""
 
 from __future__ import annotations
 

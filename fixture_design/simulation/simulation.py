@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from fixture_design.arrays import ArrayLike, Rows, Vector, Weights
+from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.assembly import Assembly
 from fixture_design.recognition import Classifier, Log
 from fixture_design.simulation.belief import relative
@@ -37,6 +37,11 @@ class Sample:
 class Controller(Protocol):
     """Moves the virtual target of the impedance."""
 
+    @property
+    def start(self) -> Vector:
+        """The pose to begin at, shape (3,)."""
+        ...
+
     def target(self, sample: Sample) -> Vector:
         """The next target, shape (3,)."""
         ...
@@ -47,19 +52,20 @@ class Run:
     """A run that was simulated.
 
     Attributes:
-        log: wrenches, displacements and true contacts, a row for each period.  poses: of the part, relative to where
-            the fixed parts really are, shape (n, 3).
-        states: what the recogniser left possible.
+        log: wrenches, displacements and true contacts, a row for each period.
+        poses: of the part, as the robot knows them, shape (n, 3).  shift: where the fixed parts really are, shape (3,).
+        possible: ids of the states that the recogniser left.
     """
 
     log: Log
     poses: Rows
-    states: tuple[tuple[str, ...], ...]
+    shift: Vector
+    possible: tuple[tuple[str, ...], ...]
 
-    def first(self, reached: Weights) -> float | None:
-        """When a condition, one number a row, first holds [s]; None: never."""
-        rows = np.flatnonzero(reached)
-        return float(self.log.times[rows[0]]) if len(rows) else None
+    @property
+    def true_poses(self) -> Rows:
+        """The part's poses as the fixed parts see them, shape (n, 3)."""
+        return relative(self.shift, self.poses)
 
 
 @dataclass(eq=False)
@@ -92,9 +98,7 @@ class Simulation:
 
         builder = DiagramBuilder()
         world = add_planar_world(builder, assembly, setup, shift)
-        sensor = builder.AddSystem(
-            sensor_system(world.wrist, setup.sensor, classifier.signals.length, setup.period)
-        )
+        sensor = builder.AddSystem(sensor_system(world.wrist, setup.sensor, classifier.signals.length, setup.period))
         recognition = builder.AddSystem(recognition_system(classifier, setup.period, known))
         plant = world.plant
         builder.Connect(plant.get_reaction_forces_output_port(), sensor.GetInputPort("reactions"))
@@ -108,7 +112,6 @@ class Simulation:
     def run(
         self,
         controller: Controller,
-        start: ArrayLike,
         duration: float,
         every: int = 2,
         until: Callable[[np.ndarray], bool] = lambda _: False,
@@ -116,15 +119,16 @@ class Simulation:
         """Simulates from rest.
 
         Args:
-            start: the part's pose, shape (3,).  duration: [s].  every: periods between two targets.
+            duration: [s].  every: periods between two targets.
             until: ends the run, of the part's pose relative to where the fixed parts really are.
         """
         simulator, sensor, recognition = self._parts
         plant, context = self.world.plant, simulator.get_mutable_context()
         of_plant = plant.GetMyMutableContextFromRoot(context)
-        plant.SetPositions(of_plant, np.asarray(start, dtype=np.float64))
+        start: Any = controller.start  # Drake's stubs want another kind of array
+        plant.SetPositions(of_plant, start)
         target = plant.get_desired_state_input_port(_model(plant)).FixValue(
-            of_plant, np.concatenate([np.asarray(start, dtype=np.float64), np.zeros(3)])
+            of_plant, np.concatenate([start, np.zeros(3)])
         )
         of_sensor, of_recognition = (system.GetMyContextFromRoot(context) for system in (sensor, recognition))
         rows: list[tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...], tuple[str, ...]]] = []
@@ -136,16 +140,17 @@ class Simulation:
             wrench, twist = (sensor.GetOutputPort(name).Eval(of_sensor) for name in ("wrench", "twist"))
             possible = recognition.possible(of_recognition)
             truth = true_contacts(self.world, plant.get_contact_results_output_port().Eval(of_plant), state[2])
-            pose = relative(self.world.shift, state[:3])
-            rows.append((wrench, twist, pose, truth, possible))
-            if until(pose):
+            rows.append((wrench, twist, state[:3], truth, possible))
+            if until(relative(self.world.shift, state[:3])):
                 break
             if k % every == 0:
                 sample = Sample(time, state[:3], state[3:], wrench, possible)
                 wanted = np.concatenate([controller.target(sample), np.zeros(3)])
                 target.GetMutableData().set_value(wanted)
         wrenches, twists, poses, truths, states = zip(*rows, strict=True)
-        return Run(Log.of(times[: len(rows)], wrenches, twists, truths), np.array(poses), tuple(states))
+        return Run(
+            Log.of(times[: len(rows)], wrenches, twists, truths), np.array(poses), self.world.shift, tuple(states)
+        )
 
 
 def _model(plant: Any) -> Any:

@@ -18,15 +18,13 @@ if TYPE_CHECKING:
 AMBIGUOUS = -1
 
 
-def recognition_system(
-    classifier: Classifier, period: float, known: str | Iterable[str] | None = None
-) -> LeafSystem:
+def recognition_system(classifier: Classifier, period: float, known: str | Iterable[str] | None = None) -> LeafSystem:
     """Recognition as a Drake system: each period one sample, and what remains possible after it.
 
-    Input ports: `wrench`, [f; m] applied to the part as `Classifier.recognize` takes it; `twist`, likewise, which may be
-    left unconnected. Output ports: `state`, shape (1,), the row of the state in ``classifier.ids``, or -1 while it is
-    not one alone; `possible`, shape (number of states,), 1 for each state that is, else 0; `margins`, likewise, by how
-    much the latest sample is inside each state's set (-inf: not asked).
+    Input ports: `wrench`, [f; m] applied to the part as `Classifier.recognize` takes it; `twist`, likewise, which may
+    be left unconnected. Output ports: `state`, shape (1,), the row of the state in ``classifier.ids``, or -1 while it
+    is not one alone; `possible`, shape (number of states,), 1 for each state that is, else 0; `margins`, likewise, by
+    how much the latest sample is inside each state's set (-inf: not asked).
 
     Args:
         period: of samples [s].  known: the state at the start, or those that it may be.
@@ -63,7 +61,8 @@ def _recognition_class() -> Any:
             self._wrench = self.DeclareVectorInputPort("wrench", BasicVector(size))
             self._twist = self.DeclareVectorInputPort("twist", BasicVector(size))
             # numbers, since Drake copies abstract states at every step, and a classifier with them
-            self.DeclareDiscreteState(np.concatenate([self._mask(start.possible), np.full(count, -np.inf)]))
+            at_start: Any = np.concatenate([self._mask(start.possible), np.full(count, -np.inf)])
+            self.DeclareDiscreteState(at_start)
             self.DeclarePeriodicDiscreteUpdateEvent(period, 0.0, self._update)
             after = {self.xd_ticket()}
             self.DeclareVectorOutputPort("state", BasicVector(1), self._write_state, after)
@@ -75,8 +74,9 @@ def _recognition_class() -> Any:
             return tuple(name for name, chosen in zip(self._ids, mask, strict=True) if chosen)
 
         def _update(self, context: Context, state: Any) -> None:
-            twist = self._twist.Eval(context) if self._twist.HasValue(context) else None
-            after = Recogniser(self._classifier, self.possible(context)).step(self._wrench.Eval(context), twist)
+            wrench: Any = self._wrench.Eval(context)
+            twist: Any = self._twist.Eval(context) if self._twist.HasValue(context) else None
+            after = Recogniser(self._classifier, self.possible(context)).step(wrench, twist)
             assert after.latest is not None
             margins = [after.latest.margins.get(name, -np.inf) for name in self._ids]
             state.set_value(np.concatenate([self._mask(after.possible), margins]))
@@ -100,7 +100,7 @@ def _recognition_class() -> Any:
 @cache
 def _sensor_class() -> Any:
     """The class, made when Drake is needed."""
-    from pydrake.common.value import Value  # noqa: PLC0415 - as above
+    from pydrake.common.value import Value  # noqa: PLC0415 # pyright: ignore[reportAttributeAccessIssue] - as above
     from pydrake.multibody.math import SpatialForce  # noqa: PLC0415 - as above
     from pydrake.systems.framework import BasicVector, LeafSystem  # noqa: PLC0415 - as above
 
@@ -121,8 +121,9 @@ def _sensor_class() -> Any:
 
         def _update(self, context: Context, state: Any) -> None:
             before = context.get_discrete_state_vector().value()
-            motion = self._motion.Eval(context)
-            force = self._reactions.Eval(context)[self._wrist]
+            motion: Any = self._motion.Eval(context)
+            reactions: Any = self._reactions.Eval(context)
+            force = reactions[self._wrist]
             c, s = np.cos(motion[2]), np.sin(motion[2])
             f, m = force.translational(), force.rotational()
             exact = np.array([c * f[0] - s * f[1], s * f[0] + c * f[1], m[2]])  # out of the part's axes

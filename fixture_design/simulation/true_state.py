@@ -36,7 +36,9 @@ def true_contacts(world: PlanarWorld, results: Any, theta: float) -> tuple[str, 
     return tuple(sorted(found))
 
 
-def _pairs(world: PlanarWorld, ball: SimulatedFeature, body: SimulatedFeature, outward: np.ndarray, theta: float) -> list[str]:
+def _pairs(
+    world: PlanarWorld, ball: SimulatedFeature, body: SimulatedFeature, outward: np.ndarray, theta: float
+) -> list[str]:
     """Names of the pairs of an apex with the side that has the normal, or at a corner with both sides there."""
     angle = theta if body.moving else float(world.shift[2])
     c, s = np.cos(angle), np.sin(angle)
