@@ -3,11 +3,13 @@
 A recognised state says that its pairs touch, and that nothing overlaps; the robot says where the part is. Of many
 displacements of the fixed parts (particles) those stay for which some state that is possible has its pairs closed at
 the robot's pose. So the answer of the recogniser is used as what it is, a set, and the displacements tell in turn which
-of its states is the likely one.
+of its states is the likely one: whose pairs are closed there, and whose forces there, F(q) of (4-9) at one
+configuration instead of all, hold the wrench.
 """
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,9 +18,15 @@ from fixture_design.arrays import ArrayLike, Rows, Vector, Weights
 from fixture_design.assembly import ContactStateGraph
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.geometry_of import geometry_of
+from fixture_design.cones.kernel import nonnegative_least_squares
+from fixture_design.recognition import Classifier, Signals
+from fixture_design.recognition.sample_cones import Physics, sample_cones
 
 #: How far contacts may be from closed: rounded corners, contacts that give, the sensor's delay, standard deviation [m].
 CLOSED = 4e-4
+
+#: Sine of the angle by which a wrench may miss F(q) of a configuration that is known that well, standard deviation [-].
+MISSED = 0.07
 
 #: Particles, and the share of effective ones below which they are drawn anew.
 _PARTICLES, _FEW = 400, 0.5
@@ -32,7 +40,10 @@ _LOST = 0.15
 #: Gaps of the best particle, relative to `CLOSED`, beyond which all of them are wrong [-].
 _WRONG = 4.0
 
-#: A state with more contacts is believed if it is supported by this share of what the best one is [-].
+#: States with less than this share of the best one's support by their gaps are not asked for their forces [-].
+_CONSIDERED = 0.05
+
+#: An expected state is believed if it is supported by this share of what the best one is [-].
 _SUPPORTED = 0.4
 
 
@@ -42,6 +53,7 @@ class States:
 
     Attributes:
         ids, contacts: of the states.  pairs: rows of the pairs that take part.  touching: shape (states, pairs).
+        signals, physics, floor: of the classifier.
     """
 
     geometry: ContactGeometry
@@ -50,14 +62,21 @@ class States:
     pairs: np.ndarray
     touching: np.ndarray
 
+    signals: Signals
+    physics: Physics
+    floor: float
+
     @classmethod
-    def of(cls, graph: ContactStateGraph) -> States:
+    def of(cls, graph: ContactStateGraph, classifier: Classifier) -> States:
+        """The states as a classifier of forces knows them."""
         geometry = geometry_of(graph.assembly)
         pairs = np.flatnonzero(geometry.takes_part)
         names = np.array(geometry.names)[pairs]
         touching = np.array([np.isin(names, state.contacts) for state in graph.states])
         ids, contacts = zip(*((state.id, state.contacts) for state in graph.states), strict=True)
-        return cls(geometry, ids, contacts, pairs, touching)
+        signals = replace(classifier.signals, measure="force", axes="fixed", weight=0.0)
+        physics = Physics(classifier.made.friction, classifier.made.edges, np.zeros(2), np.zeros(2))
+        return cls(geometry, ids, contacts, pairs, touching, signals, physics, classifier.noise.floor)
 
     def rows(self, ids: tuple[str, ...]) -> np.ndarray:
         return np.flatnonzero(np.isin(np.array(self.ids), ids))
@@ -67,6 +86,12 @@ class States:
         distances = self.geometry.equations(q, self.pairs[None]).distances
         widest = np.where(self.touching[rows][None], distances[:, None], 0.0).max(axis=2)
         return np.maximum(widest, self.geometry.overlap(q)[:, None])
+
+    def missed(self, row: int, q: Vector, wrench: Vector) -> float:
+        """Sine of the angle between a wrench and F(q) of a state; 0 for a wrench that tells nothing."""
+        unit = self.signals.signal(wrench, None, self.floor)
+        spans = sample_cones(self.geometry, self.contacts[row], q[None], True, self.signals, self.physics).forces[0]
+        return float(np.linalg.norm(unit - nonnegative_least_squares(spans.T, unit) @ spans))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,36 +109,48 @@ class Belief:
     spread: Vector
 
     @classmethod
-    def start(cls, graph: ContactStateGraph, spread: ArrayLike, rng: np.random.Generator) -> Belief:
+    def start(
+        cls, graph: ContactStateGraph, classifier: Classifier, spread: ArrayLike, rng: np.random.Generator
+    ) -> Belief:
         """Before anything was touched: no displacement expected, give or take ``spread`` [m, m, rad]."""
         widths = np.asarray(spread, dtype=np.float64)
         shifts = widths * rng.normal(size=(_PARTICLES, 3))
-        return cls(States.of(graph), shifts, np.full(_PARTICLES, 1 / _PARTICLES), widths)
+        return cls(States.of(graph, classifier), shifts, np.full(_PARTICLES, 1 / _PARTICLES), widths)
 
     def after(
-        self, pose: Vector, possible: tuple[str, ...], expected: frozenset[str], rng: np.random.Generator
-    ) -> tuple[Belief, str, Vector]:
-        """The belief after a sample, the likely state among the possible ones, and where the fixed parts then are.
+        self,
+        pose: Vector,
+        wrench: Vector,
+        possible: tuple[str, ...],
+        rng: np.random.Generator,
+        expected: Container[str] = (),
+    ) -> Estimate:
+        """The belief after a sample.
 
         Args:
-            pose: the part's, in the robot's frame.  possible: ids that the recogniser left.
-            expected: ids that are preferred where others are no more likely than `_SUPPORTED` tells.
+            pose: the part's, in the robot's frame.  wrench: measured, likewise.
+            possible: ids that the recogniser left.  expected: ids that are preferred where others are hardly likelier.
         """
         rows = self.states.rows(possible)
         gaps = self.states.gaps(relative(self.shifts, pose), rows)
         best = gaps.min(axis=1)
         weights = self.weights * np.exp(-0.5 * (best / CLOSED) ** 2) + np.finfo(float).tiny
         weights /= weights.sum()
-        fits = np.exp(-0.5 * (gaps / CLOSED) ** 2)
-        support = weights @ fits
-        counts = self.states.touching[rows].sum(axis=1)
+        fits = weights[:, None] * np.exp(-0.5 * (gaps / CLOSED) ** 2)
+        support, shifts = fits.sum(axis=0), [self._mean(share, weights) for share in fits.T]
+        for k in np.flatnonzero(support >= _CONSIDERED * support.max()):
+            there = turned(wrench, -shifts[k][2])
+            missed = self.states.missed(int(rows[k]), relative(shifts[k], pose), there)
+            support[k] *= np.exp(-0.5 * (missed / MISSED) ** 2)
         ids = [self.states.ids[row] for row in rows]
         likely = np.flatnonzero(support >= _SUPPORTED * support.max())
-        chosen = max(likely, key=lambda k: (ids[k] in expected, counts[k], support[k]))
-        share = weights * fits[:, chosen]
-        shift = (share @ self.shifts) / share.sum() if share.sum() > 0 else weights @ self.shifts
+        chosen = max(likely, key=lambda k: (ids[k] in expected, support[k]))
         lost = bool(best.min() > _WRONG * CLOSED)
-        return self._drawn(weights, lost, rng), ids[chosen], shift
+        return Estimate(self._drawn(weights, lost, rng), ids[chosen], shifts[chosen])
+
+    def _mean(self, share: Weights, weights: Weights) -> Vector:
+        total = float(share.sum())
+        return share @ self.shifts / total if total > 0 else weights @ self.shifts
 
     def _drawn(self, weights: Weights, lost: bool, rng: np.random.Generator) -> Belief:
         count = len(weights)
@@ -125,8 +162,27 @@ class Belief:
         return replace(self, shifts=shifts, weights=np.full(count, 1 / count))
 
 
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """What is believed after a sample.
+
+    Attributes:
+        state: id of the likely one of the possible states.  shift: where the fixed parts then are, shape (3,).
+    """
+
+    belief: Belief
+    state: str
+    shift: Vector
+
+
 def relative(frame: np.ndarray, pose: np.ndarray) -> np.ndarray:
     """Planar poses seen from planar frames, shapes (..., 3): X_FP of X_WF and X_WP."""
     c, s = np.cos(frame[..., 2]), np.sin(frame[..., 2])
     x, y = pose[..., 0] - frame[..., 0], pose[..., 1] - frame[..., 1]
     return np.stack([c * x + s * y, -s * x + c * y, pose[..., 2] - frame[..., 2]], axis=-1)
+
+
+def turned(vector: Vector, angle: float) -> Vector:
+    """A planar displacement or wrench in axes that are turned by minus the angle, shape (3,)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1], vector[2]])

@@ -15,7 +15,7 @@ import numpy as np
 from fixture_design.analysis.hybrid_control import HybridControl, commanded_pair, hybrid_control, nearest_in
 from fixture_design.arrays import Vector
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone, convert
-from fixture_design.simulation.belief import Belief, relative
+from fixture_design.simulation.belief import Belief, relative, turned
 from fixture_design.simulation.plan import Plan
 from fixture_design.simulation.setup import Robot
 from fixture_design.simulation.simulation import Sample
@@ -74,7 +74,8 @@ class ClosedLoop:
     def target(self, sample: Sample) -> Vector:
         """The next virtual target, in the robot's frame, shape (3,)."""
         expected = self.plan.legs[self.leg].allowed
-        self.belief, state, shift = self.belief.after(sample.pose, sample.possible, expected, self.rng)
+        found = self.belief.after(sample.pose, sample.wrench, sample.possible, self.rng, expected)
+        self.belief, state, shift = found.belief, found.state, found.shift
         q = relative(shift, sample.pose)
         self._choose_leg(sample.time, state, q)
         control, press = self._control(state, q)
@@ -82,14 +83,14 @@ class ClosedLoop:
         share = self.pace.speed * self.pace.period / max(float(np.linalg.norm(wish)), np.finfo(float).tiny)
         moved, force = commanded_pair(control, wish * min(1.0, share), press)
         ahead = self._limited(_admissible(control, self._ahead(sample.pose, shift) + moved))
-        self._unpressed = sample.pose + _turned(ahead / self._scale, shift[2])
-        return self._unpressed + _turned(force / self._stiffness / self._scale, shift[2])
+        self._unpressed = sample.pose + turned(ahead / self._scale, shift[2])
+        return self._unpressed + turned(force / self._stiffness / self._scale, shift[2])
 
     def _ahead(self, pose: Vector, shift: Vector) -> np.ndarray:
         """How far the latest target, without its press, is ahead of the part now; scaled, as the fixed parts lie."""
         if self._unpressed is None:
             return np.zeros(3)
-        return self._scale * _turned(self._unpressed - pose, -shift[2])
+        return self._scale * turned(self._unpressed - pose, -shift[2])
 
     def _limited(self, offset: np.ndarray) -> np.ndarray:
         pull = float(np.abs(offset * self._stiffness).max())
@@ -126,8 +127,3 @@ def _admissible(control: HybridControl, offset: np.ndarray) -> np.ndarray:
     """The nearest displacement in A: contacts are pressed by the force alone, not by a target that ran into them."""
     nearest = [nearest_in(convert(cone), offset) for cone in control.displacements]
     return min(nearest, key=lambda found: float(np.linalg.norm(found - offset)))
-
-
-def _turned(vector: np.ndarray, angle: float) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1], vector[2]])

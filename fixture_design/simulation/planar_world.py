@@ -52,7 +52,7 @@ class PlanarWorld:
     Attributes:
         wrist: index of the joint between robot and part, whose reaction a wrist sensor measures.
         features: by geometry id.  sides: features of the moving part in its frame, and of the fixed ones in theirs.
-        shift: where the fixed parts really are, [x, y, theta], shape (3,).
+        shift: where the fixed parts really are, [x, y, theta], shape (3,).  radius: of rounded apices [m].
     """
 
     plant: MultibodyPlant
@@ -61,6 +61,7 @@ class PlanarWorld:
     features: dict[Any, SimulatedFeature]
     sides: tuple[PlanarFeatures, PlanarFeatures]
     shift: Vector
+    radius: float
 
 
 def add_planar_world(builder: DiagramBuilder, assembly: Assembly, setup: Setup, shift: ArrayLike) -> PlanarWorld:
@@ -92,7 +93,7 @@ def add_planar_world(builder: DiagramBuilder, assembly: Assembly, setup: Setup, 
     for group in (shapes.balls, shapes.boxes):
         filters.ExcludeWithin(GeometrySet(group))
     scene.collision_filter_manager().Apply(filters)
-    return PlanarWorld(plant, scene, wrist, shapes.features, sides, where)
+    return PlanarWorld(plant, scene, wrist, shapes.features, sides, where, setup.surfaces.radius)
 
 
 def _robot(plant: MultibodyPlant, robot: Robot) -> tuple[RigidBody, int]:

@@ -52,20 +52,22 @@ class Run:
     """A run that was simulated.
 
     Attributes:
-        log: wrenches, displacements and true contacts, a row for each period.
-        poses: of the part, as the robot knows them, shape (n, 3).  shift: where the fixed parts really are, shape (3,).
-        possible: ids of the states that the recogniser left.
+        log: wrenches, displacements and true contacts at the moments when the sensor took them.
+        poses: of the part, as the robot knew them then, shape (n, 3).  final: the last one, shape (3,).
+        shift: where the fixed parts really are, shape (3,).
+        possible: ids of the states that the recogniser had left when the sensor showed the row; a period behind it.
     """
 
     log: Log
     poses: Rows
+    final: Vector
     shift: Vector
     possible: tuple[tuple[str, ...], ...]
 
     @property
-    def true_poses(self) -> Rows:
-        """The part's poses as the fixed parts see them, shape (n, 3)."""
-        return relative(self.shift, self.poses)
+    def true_final(self) -> Vector:
+        """The last pose as the fixed parts see it, shape (3,)."""
+        return relative(self.shift, self.final)
 
 
 @dataclass(eq=False)
@@ -131,26 +133,24 @@ class Simulation:
             of_plant, np.concatenate([start, np.zeros(3)])
         )
         of_sensor, of_recognition = (system.GetMyContextFromRoot(context) for system in (sensor, recognition))
-        rows: list[tuple[np.ndarray, np.ndarray, np.ndarray, tuple[str, ...], tuple[str, ...]]] = []
-        steps = round(duration / self.setup.period)
-        times = self.setup.period * np.arange(1, steps + 1)
-        for k, time in enumerate(times.tolist()):
-            simulator.AdvanceTo(time)
-            state = plant.GetPositionsAndVelocities(of_plant)
+        rows: list[tuple[float, np.ndarray, np.ndarray, np.ndarray, tuple[str, ...], tuple[str, ...]]] = []
+        pose, truth = start, ()
+        for k in range(1, round(duration / self.setup.period) + 1):
+            simulator.AdvanceTo(k * self.setup.period)
+            # events at the end of a step are left to the next one: the sensor shows its sample of a period ago
             wrench, twist = (sensor.GetOutputPort(name).Eval(of_sensor) for name in ("wrench", "twist"))
             possible = recognition.possible(of_recognition)
-            truth = true_contacts(self.world, plant.get_contact_results_output_port().Eval(of_plant), state[2])
-            rows.append((wrench, twist, state[:3], truth, possible))
-            if until(relative(self.world.shift, state[:3])):
+            rows.append(((k - 1) * self.setup.period, wrench, twist, pose, truth, possible))
+            state = plant.GetPositionsAndVelocities(of_plant)
+            pose = state[:3]
+            truth = true_contacts(self.world, plant.get_contact_results_output_port().Eval(of_plant), pose)
+            if until(relative(self.world.shift, pose)):
                 break
-            if k % every == 0:
-                sample = Sample(time, state[:3], state[3:], wrench, possible)
-                wanted = np.concatenate([controller.target(sample), np.zeros(3)])
-                target.GetMutableData().set_value(wanted)
-        wrenches, twists, poses, truths, states = zip(*rows, strict=True)
-        return Run(
-            Log.of(times[: len(rows)], wrenches, twists, truths), np.array(poses), self.world.shift, tuple(states)
-        )
+            if k % every == 1:
+                sample = Sample(k * self.setup.period, pose, state[3:], wrench, possible)
+                target.GetMutableData().set_value(np.concatenate([controller.target(sample), np.zeros(3)]))
+        times, wrenches, twists, poses, truths, states = zip(*rows, strict=True)
+        return Run(Log.of(times, wrenches, twists, truths), np.array(poses), pose, self.world.shift, tuple(states))
 
 
 def _model(plant: Any) -> Any:

@@ -60,7 +60,7 @@ def closed_loop(trial: Trial, seed: int) -> ClosedLoop:
     """The recognised state moves the target."""
     rng = np.random.default_rng(seed)
     # as wide as the errors: the standard deviation of a uniform error is its bound by the root of three
-    belief = Belief.start(trial.plan.graph, trial.errors / np.sqrt(3.0), rng)
+    belief = Belief.start(trial.plan.graph, trial.classifier, trial.errors / np.sqrt(3.0), rng)
     return ClosedLoop(trial.plan, trial.setup.robot, belief, rng)
 
 
@@ -86,6 +86,5 @@ def insert(trial: Trial, shift: Vector, seed: int, maker: Maker = closed_loop) -
     simulation = Simulation.of(trial.plan.graph.assembly, trial.classifier, setup, shift, free)
     controller = maker(trial, seed)
     run = simulation.run(controller, trial.duration, until=lambda q: bool(q[1] <= -trial.depth))
-    deep = np.flatnonzero(run.true_poses[:, 1] <= -trial.depth)
-    inserted = float(run.log.times[deep[0]]) if len(deep) else None
+    inserted = float(run.log.times[-1]) if run.true_final[1] <= -trial.depth else None
     return Outcome(inserted, run, getattr(controller, "surprises", 0))

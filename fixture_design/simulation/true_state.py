@@ -6,21 +6,24 @@ from typing import Any
 
 import numpy as np
 
+from fixture_design.arrays import Vector
 from fixture_design.assembly.features import PlanarFeatures
+from fixture_design.simulation.belief import relative
 from fixture_design.simulation.planar_world import PlanarWorld, SimulatedFeature
 
-#: A normal belongs to a side whose own is within this cosine [-]; between two sides the apex is at both their ends.
-_ALONG = 0.99
+#: The point of a rectangle nearest to a ball that is beyond a corner is the corner: this near, relative to the radius of
+#: the ball [-]. The force is then between those of the sides.
+_AT_CORNER = 1e-2
 
 #: Contacts with less force than this are none [N]: the solver leaves some where bodies are near each other.
 LEAST_FORCE = 1e-3
 
 
-def true_contacts(world: PlanarWorld, results: Any, theta: float) -> tuple[str, ...]:
-    """The contacting pairs as a graph names them, sorted; an apex at an apex has the pairs of all their sides.
+def true_contacts(world: PlanarWorld, results: Any, pose: Vector) -> tuple[str, ...]:
+    """The contacting pairs as a graph names them, sorted; where two apices meet, the pairs of all their sides.
 
     Args:
-        results: Drake's contact results.  theta: the moving part's angle [rad].
+        results: Drake's contact results.  pose: the moving part's, shape (3,).
     """
     found: set[str] = set()
     for k in range(results.num_point_pair_contacts()):
@@ -29,28 +32,44 @@ def true_contacts(world: PlanarWorld, results: Any, theta: float) -> tuple[str, 
             continue
         pair = info.point_pair()
         first, second = world.features[pair.id_A], world.features[pair.id_B]
-        ball, body = (first, second) if first.apex else (second, first)
-        # nhat_BA_W points from B into A; what is wanted is the outward normal of the body with the side
-        outward = np.asarray(pair.nhat_BA_W).reshape(3)[:2] * (1.0 if body is second else -1.0)
-        found.update(_pairs(world, ball, body, outward, theta))
+        # witnesses are on the surfaces: that of the body with the sides is at one of them
+        ball, body, p_W = (first, second, pair.p_WCb) if first.apex else (second, first, pair.p_WCa)
+        frame = pose if body.moving else world.shift
+        witness = np.array([*np.asarray(p_W).reshape(3)[:2], 0.0])
+        found.update(_pairs(world, ball, body, relative(frame, witness)[:2]))
     return tuple(sorted(found))
 
 
-def _pairs(
-    world: PlanarWorld, ball: SimulatedFeature, body: SimulatedFeature, outward: np.ndarray, theta: float
-) -> list[str]:
-    """Names of the pairs of an apex with the side that has the normal, or at a corner with both sides there."""
-    angle = theta if body.moving else float(world.shift[2])
-    c, s = np.cos(angle), np.sin(angle)
-    side = world.sides[0 if body.moving else 1]
-    seen = np.array([c * outward[0] + s * outward[1], -s * outward[0] + c * outward[1]])
+def _pairs(world: PlanarWorld, ball: SimulatedFeature, body: SimulatedFeature, p: np.ndarray) -> set[str]:
+    """Names of the pairs of an apex with the side at a point, in the body's frame, or with those at a corner."""
+    side, other = world.sides if body.moving else world.sides[::-1]
     rows = np.array(body.rows)
-    cosines = side.normals[rows] @ seen
-    touched = rows[cosines >= _ALONG] if (cosines >= _ALONG).any() else rows[cosines > 1 - _ALONG]
-    assert ball.apex is not None
-    names = [_named(side, int(row)) for row in touched]
-    return [f"{name} - {ball.apex}" if body.moving else f"{ball.apex} - {name}" for name in names if name is not None]
+    corner = int(np.linalg.norm(side.starts[rows] - p, axis=1).argmin())
+    if np.linalg.norm(side.starts[rows[corner]] - p) > _AT_CORNER * world.radius:
+        heights = np.einsum("ij,ij->i", side.normals[rows], side.starts[rows] - p)
+        touched = [int(rows[np.abs(heights).argmin()])]
+        return _named(ball.apex, [side.facet_names[row] for row in touched], body.moving)
+    there = int(rows[corner])
+    found = _named(ball.apex, [side.facet_names[row] for row in (there, _before(rows, corner))], body.moving)
+    meeting = ball.rows[0]
+    of_ball = next(rows for rows in _bodies(other) if meeting in rows)
+    own = (meeting, _before(np.array(of_ball), of_ball.index(meeting)))
+    return found | _named(side.apex_names[there], [other.facet_names[row] for row in own], ball.moving)
 
 
-def _named(side: PlanarFeatures, row: int) -> str | None:
-    return side.facet_names[row]
+def _bodies(side: PlanarFeatures) -> list[list[int]]:
+    """The rows of each body of a side."""
+    ends = np.cumsum([len(polygon) for polygon in side.polygons])
+    return [list(range(int(end) - len(polygon), int(end))) for end, polygon in zip(ends, side.polygons, strict=True)]
+
+
+def _before(rows: np.ndarray, place: int) -> int:
+    """The row of the facet that ends at an apex."""
+    return int(rows[place - 1])
+
+
+def _named(apex: str | None, facets: list[str | None], facets_move: bool) -> set[str]:
+    """Pairs of an apex with facets that take part, the moving feature first."""
+    if apex is None:
+        return set()
+    return {f"{name} - {apex}" if facets_move else f"{apex} - {name}" for name in facets if name is not None}
