@@ -43,6 +43,12 @@ _WRONG = 4.0
 #: States with less than this share of the best one's support by their gaps are not asked for their forces [-].
 _CONSIDERED = 0.05
 
+#: A contact more explains about this many times more wrenches, and is this much less likely where it is not needed [-].
+_CONTACT_MORE = 0.25
+
+#: A state is the same at the next sample with this chance; else it is any that the recogniser leaves [-].
+_STAYS = 0.8
+
 #: An expected state is believed if it is supported by this share of what the best one is [-].
 _SUPPORTED = 0.4
 
@@ -100,12 +106,14 @@ class Belief:
 
     Attributes:
         shifts: displacements [x, y, theta] of the fixed parts, shape (n, 3).  weights: their sum is 1.
+        chances: of the states, after the latest sample; their sum is 1.
         spread: standard deviations expected at the start, shape (3,).
     """
 
     states: States
     shifts: Rows
     weights: Weights
+    chances: Weights
     spread: Vector
 
     @classmethod
@@ -115,7 +123,9 @@ class Belief:
         """Before anything was touched: no displacement expected, give or take ``spread`` [m, m, rad]."""
         widths = np.asarray(spread, dtype=np.float64)
         shifts = widths * rng.normal(size=(_PARTICLES, 3))
-        return cls(States.of(graph, classifier), shifts, np.full(_PARTICLES, 1 / _PARTICLES), widths)
+        states = States.of(graph, classifier)
+        even = np.full(_PARTICLES, 1 / _PARTICLES), np.full(len(states.ids), 1 / len(states.ids))
+        return cls(states, shifts, *even, widths)
 
     def after(
         self,
@@ -137,16 +147,21 @@ class Belief:
         weights = self.weights * np.exp(-0.5 * (best / CLOSED) ** 2) + np.finfo(float).tiny
         weights /= weights.sum()
         fits = weights[:, None] * np.exp(-0.5 * (gaps / CLOSED) ** 2)
-        support, shifts = fits.sum(axis=0), [self._mean(share, weights) for share in fits.T]
+        support = fits.sum(axis=0) + np.finfo(float).tiny
+        shifts = [self._mean(share, weights) for share in fits.T]
         for k in np.flatnonzero(support >= _CONSIDERED * support.max()):
             there = turned(wrench, -shifts[k][2])
             missed = self.states.missed(int(rows[k]), relative(shifts[k], pose), there)
             support[k] *= np.exp(-0.5 * (missed / MISSED) ** 2)
+        support *= _CONTACT_MORE ** self.states.touching[rows].sum(axis=1)
+        support *= _STAYS * self.chances[rows] + (1 - _STAYS) / len(self.chances)
+        chances = np.zeros(len(self.chances))
+        chances[rows] = support / max(float(support.sum()), np.finfo(float).tiny)
         ids = [self.states.ids[row] for row in rows]
         likely = np.flatnonzero(support >= _SUPPORTED * support.max())
         chosen = max(likely, key=lambda k: (ids[k] in expected, support[k]))
         lost = bool(best.min() > _WRONG * CLOSED)
-        return Estimate(self._drawn(weights, lost, rng), ids[chosen], shifts[chosen])
+        return Estimate(replace(self._drawn(weights, lost, rng), chances=chances), ids[chosen], shifts[chosen])
 
     def _mean(self, share: Weights, weights: Weights) -> Vector:
         total = float(share.sum())

@@ -94,7 +94,7 @@ class ClosedLoop:
 
     def _limited(self, offset: np.ndarray) -> np.ndarray:
         pull = float(np.abs(offset * self._stiffness).max())
-        return offset * min(1.0, self.pace.most_force / max(pull, np.finfo(float).tiny))
+        return offset if pull <= self.pace.most_force else offset * (self.pace.most_force / pull)
 
     def _control(self, state: str, q: Vector) -> tuple[HybridControl, np.ndarray]:
         """A and F of a state near a configuration, scaled, and the wished press on all its contacts."""

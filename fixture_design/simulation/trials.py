@@ -33,7 +33,7 @@ class Trial:
     plan: Plan
     classifier: Classifier
     setup: Setup = field(default_factory=Setup)
-    errors: Vector = field(default_factory=lambda: np.array([0.008, 0.002, 0.05]))
+    errors: Vector = field(default_factory=lambda: np.array([0.012, 0.002, 0.05]))
     depth: float = 0.02
     duration: float = 15.0
 
