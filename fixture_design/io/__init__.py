@@ -20,7 +20,7 @@ from fixture_design.io.verdict_record import error_record, verdict_to_dict
 if TYPE_CHECKING:
     from fixture_design.io.classifier_file import classifier_to_dict, read_classifier, write_classifier
     from fixture_design.io.hand_file import MODEL_ENDINGS, read_hand
-    from fixture_design.io.log_file import read_log
+    from fixture_design.io.log_file import read_log, write_log
 
 #: Names that are loaded when first asked for: a tenth of any start otherwise.
 _LATER = {
@@ -30,6 +30,7 @@ _LATER = {
     "read_hand": "hand_file",
     "read_log": "log_file",
     "write_classifier": "classifier_file",
+    "write_log": "log_file",
 }
 
 __all__ = [
@@ -67,6 +68,7 @@ __all__ = [
     "write_graph",
     "write_graphml",
     "write_layout",
+    "write_log",
     "write_urdf",
 ]
 

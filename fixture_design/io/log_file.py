@@ -3,7 +3,8 @@
 The first line names the columns, in any order: t, fx, fy, fz, mx, my, mz, and for displacements dx, dy, dz, rx, ry, rz;
 in the plane t, fx, fy, mz, and dx, dy, rz, where the others may be there and are left out. A name may be followed by
 its unit in brackets, which must be that of the column: `fx [N]`, `mz [N m]`, `t [s]`, `dx [m]`, `rz [rad]`. Blank
-lines, and lines that begin with #, are left out. A row's number counts the others from 1.
+lines, and lines that begin with #, are left out. A row's number counts the others from 1. A simulation adds a column
+`truth`, the contacts that there really were: `apex 4 - facet 7; facet 2 - apex 1`, nothing for none.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from fixture_design.errors import FileFormatError
 from fixture_design.io.documents import read_bytes
 from fixture_design.recognition.log import Log
@@ -21,7 +24,11 @@ from fixture_design.tolerances import MOST_FORCE
 
 _WRENCH = {2: ("fx", "fy", "mz"), 3: ("fx", "fy", "fz", "mx", "my", "mz")}
 _TWIST = {2: ("dx", "dy", "rz"), 3: ("dx", "dy", "dz", "rx", "ry", "rz")}
-_ALL = ("t", *_WRENCH[3], *_TWIST[3])
+_TRUTH = "truth"
+_ALL = ("t", *_WRENCH[3], *_TWIST[3], _TRUTH)
+
+#: Between the contacts of a row's truth.
+_AND = ";"
 
 #: The unit of a column by its first letter, and ways to write it.
 _UNITS = {
@@ -53,15 +60,36 @@ def read_log(path: str | Path, plane: int) -> Log:
     columns = _columns(header[1], path, header[0], plane)
     wanted = ["t", *_WRENCH[plane], *(_TWIST[plane] if _TWIST[plane][0] in columns else ())]
     places = [columns.index(name) for name in wanted]
-    rows = [
-        [_number(cells[k], name, path, line, row) for k, name in zip(places, wanted, strict=True)]
-        for row, (line, cells) in enumerate(_checked(lines, len(columns), path), start=1)
-    ]
+    rows, truths = [], []
+    for row, (line, cells) in enumerate(_checked(lines, len(columns), path), start=1):
+        rows.append([_number(cells[k], name, path, line, row) for k, name in zip(places, wanted, strict=True)])
+        if _TRUTH in columns:
+            truths.append(tuple(filter(None, map(str.strip, cells[columns.index(_TRUTH)].split(_AND)))))
     if not rows:
         raise FileFormatError("the log has a header and no rows", source=path, expected="a row for each sample")
     size = len(_WRENCH[plane])
     twists = [row[1 + size :] for row in rows] if len(wanted) > 1 + size else None
-    return Log.of([row[0] for row in rows], [row[1 : 1 + size] for row in rows], twists)
+    return Log.of([row[0] for row in rows], [row[1 : 1 + size] for row in rows], twists, truths or None)
+
+
+def write_log(log: Log, path: str | Path) -> None:
+    """A log as CSV, with all digits; twists and truth where it has them.
+
+    Raises:
+        FileFormatError: the file cannot be written.
+    """
+    plane = 2 if log.wrenches.shape[1] == len(_WRENCH[2]) else 3
+    names = ["t", *_WRENCH[plane], *(_TWIST[plane] if log.twists is not None else ())]
+    numbers = [log.times[:, None], log.wrenches, *([log.twists] if log.twists is not None else [])]
+    rows: list[list[object]] = [list(row) for row in np.hstack(numbers).tolist()]
+    if log.truth is not None:
+        names.append(_TRUTH)
+        rows = [[*row, f"{_AND} ".join(contacts)] for row, contacts in zip(rows, log.truth, strict=True)]
+    text = "\n".join(",".join(map(str, row)) for row in [names, *rows])
+    try:
+        Path(path).write_text(text + "\n", encoding="utf-8")
+    except OSError as cause:
+        raise FileFormatError(f"the log cannot be written: {cause.strerror}", source=path) from cause
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
@@ -101,11 +129,11 @@ def _name(heading: str, path: Path, place: str) -> str:
         raise FileFormatError(
             f"unknown column {heading!r:.60}", source=path, place=place, expected=f"some of {', '.join(_ALL)}"
         )
-    units = _UNITS[name[0]]
+    units = _UNITS[name[0]] if name != _TRUTH else ()
     if match[2] is not None and match[2] not in units:
         raise FileFormatError(
             f"the column {name!r} is in another unit", source=path, place=place, found=match[2] or "no unit",
-            expected=units[0],
+            expected=units[0] if units else "none",
         )  # fmt: skip
     return name
 

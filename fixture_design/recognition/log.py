@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,14 +21,22 @@ class Log:
 
     Attributes:
         times: shape (n,) [s].  wrenches: applied to the part, shape (n, d).  twists: likewise, or None.
+        truth: of each row the contacts that there really were, sorted, where somebody knows; only for scoring.
     """
 
     times: Weights
     wrenches: Rows
     twists: Rows | None = None
+    truth: tuple[tuple[str, ...], ...] | None = None
 
     @classmethod
-    def of(cls, times: ArrayLike, wrenches: ArrayLike, twists: ArrayLike | None = None) -> Log:
+    def of(
+        cls,
+        times: ArrayLike,
+        wrenches: ArrayLike,
+        twists: ArrayLike | None = None,
+        truth: Sequence[tuple[str, ...]] | None = None,
+    ) -> Log:
         """A log of arrays.
 
         Raises:
@@ -48,7 +56,10 @@ class Log:
         for name, rows in (("time", t[:, None]), ("wrench", p), ("twist", v)):
             if rows is not None:
                 _require_usable(name, rows)
-        return cls(read_only(t), read_only(p), None if v is None else read_only(v))
+        if truth is not None and len(truth) != len(t):
+            raise InputError("true contacts must be as many as wrenches", found=f"{len(truth)} for {len(t)} rows")
+        contacts = None if truth is None else tuple(tuple(sorted(some)) for some in truth)
+        return cls(read_only(t), read_only(p), None if v is None else read_only(v), contacts)
 
     def __len__(self) -> int:
         return len(self.times)
