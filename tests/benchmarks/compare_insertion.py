@@ -19,8 +19,19 @@ from scipy.spatial import cKDTree
 
 from fixture_design.assembly import ContactStateGraph
 from fixture_design.recognition import Classifier, recognize_log
-from fixture_design.simulation import ClosedLoop, Outcome, Sample, Setup, Trial, WristSensor
-from fixture_design.simulation import closed_loop, corner_first, insert, straight_down, without_looking
+from fixture_design.simulation import (
+    ClosedLoop,
+    Outcome,
+    Sample,
+    Setup,
+    Trial,
+    WristSensor,
+    closed_loop,
+    corner_first,
+    insert,
+    straight_down,
+    without_looking,
+)
 from fixture_design.simulation.belief import Belief
 from fixture_design.simulation.trials import Maker
 from tests.simulation.peg import classifier_of, peg_graph
