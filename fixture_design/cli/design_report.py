@@ -90,9 +90,10 @@ def _bound_in_words(bound: Bound) -> str:
     roles = f" ({bound.locators} locators, {bound.clamps} clamps)" if bound.locators else ""
     least = f"at least {bound.elements} elements{roles}"
     among = f"among {bound.candidates} candidates{'' if bound.complete else ' in the directions that were tried'}"
-    among += ", with a direction that leaves all locators at once" if bound.letting_go else ""
+    among += " where the part comes straight off all locators at once" if bound.letting_go else ""
     if bound.gap == 0:
-        return f"{bound.found} elements, the fewest {among}" + (" (proven)" if bound.proven else "")
+        fewer = "; sliding along some, fewer may do: limits of clamps ask for that" if bound.letting_go else ""
+        return f"{bound.found} elements, the fewest {among}" + (" (proven)" if bound.proven else "") + fewer
     if bound.found is None:
         return f"{least} are needed {among}"
     return f"{bound.found} elements; {least} are needed {among}: {bound.gap} more than proven"
@@ -110,7 +111,8 @@ def _preload_in_words(result: DesignResult) -> str:
 
 def _accuracy_in_words(result: DesignResult, accuracy: float, best: float) -> str:
     """How exact the locators are, and how far that may be from the best ones."""
-    gap = f"({max(accuracy / best - 1, 0.0):.1%})"
+    ratio = max(accuracy / best, 1.0)
+    gap = f"({ratio - 1:.1%})" if ratio < 2 else f"({ratio:.3g} times)"
     if result.layout is not None and result.layout.key_features:
         taken, least = accuracy * _OFF, best * _OFF
         words = f"accuracy: with locators {_OFF * 1e3:g} mm off, a key feature is off by {taken:.3g} of its tolerance"

@@ -69,17 +69,29 @@ def better_of(first: DesignResult, second: DesignResult) -> DesignResult:
     return first if second.layout is None or _RANK[first.satisfied] > _RANK[second.satisfied] else second
 
 
-def attempt(asked: Asked, candidates: Candidates, plan: Plan, *, keep_all: bool) -> DesignResult:
+def leaves_straight(task: Task, plan: Plan) -> bool:
+    """Whether the part must come out of the locators in a straight line."""
+    asked = bool(set(LEAVING) & set(plan.require.get("locators", ())))
+    return asked or task.require is None or task.limits.loading is not None
+
+
+def opens_all(plan: Plan) -> bool:
+    """Whether some motion must leave all locators at once."""
+    return "strongly_accessible" in plan.require.get("locators", ())
+
+
+def attempt(asked: Asked, candidates: Candidates, plan: Plan, *, keep_all: bool, slides: bool = False) -> DesignResult:
     """The best layout among some candidates that does what a plan asks, verified; or why there is none.
 
     Args:
         keep_all: whether what the start has stays where it does no harm, or only what is ``fixed``.
+        slides: whether the part may slide along locators on its straight way out, although some motion leaves all.
     """
     task, ways = asked.task, asked.ways
     locators, everything = plan.require.get("locators", ()), plan.require.get("all", ())
-    leaves = bool(set(LEAVING) & set(locators)) or task.require is None or task.limits.loading is not None
-    opens = "strongly_accessible" in locators
-    start = begun(task, candidates.with_friction(plan.friction), ways, keep_all, leaves=leaves and opens, opens=opens)
+    leaves, opens = leaves_straight(task, plan), opens_all(plan)
+    lets_go = leaves and opens and not slides
+    start = begun(task, candidates.with_friction(plan.friction), ways, keep_all, leaves=lets_go, opens=opens)
     closes = "with friction" if "force_closure" in everything else None
     problem = Problem(
         start.candidates, task.limits, task.objective, start.locators, start.others, start.spare,
@@ -87,7 +99,7 @@ def attempt(asked: Asked, candidates: Candidates, plan: Plan, *, keep_all: bool)
         closes="without friction" if "form_closure" in everything else closes,
         features=features_of(task, start.candidates), duties=duties_of(task, plan, ways, start.candidates),
         standing=standing(task, start.candidates), determines=bool({"deterministic", "accurate"} & set(locators)),
-        enters=leaves or opens or "accessible" in locators, opens=opens,
+        enters=leaves or opens or "accessible" in locators, opens=opens, slides=slides,
         cancelled=asked.cancelled,
     )  # fmt: skip
     if start.conflict:
@@ -100,7 +112,7 @@ def attempt(asked: Asked, candidates: Candidates, plan: Plan, *, keep_all: bool)
         found = _by_points(asked, problem, candidates, start, plan)
     except _UselessError as error:
         kept = candidates.chosen(~error.useless[: len(candidates)])
-        return attempt(asked, kept, plan, keep_all=keep_all)
+        return attempt(asked, kept, plan, keep_all=keep_all, slides=slides)
     if task.candidates.pins is None:
         return found
     note = "without pins: no two holes of the part take a pin each in a way that lets it out and closes it"

@@ -114,6 +114,9 @@ class _Program:
         for limit, role in ((self.problem.limits.locators, locator), (self.problem.limits.clamps, ~locator)):
             if limit is not None:
                 add(np.append(role.astype(float), [0.0, 0.0]), 0.0, float(limit))
+        # as many come as there are changes, at most; new ones have no number of their own here (`_unlike`)
+        add(np.append((old & locator).astype(float), [1.0, 0.0]), float(_least_locators(self.problem, options)), np.inf)
+        add(np.append(old.astype(float), [1.0, 1.0]), float(_least_elements(self.problem)), np.inf)
         for cut in self.cuts:
             add(np.append(cut[kept].astype(float), [0.0, 0.0]), 1.0, np.inf)
         place = {int(option): column for column, option in enumerate(kept)}
@@ -179,6 +182,21 @@ def fewest_changes(
             numbers = options.candidates
             return Changes(numbers[chosen & options.locator], numbers[chosen & ~options.locator], bound)
         program.cuts += more
+
+
+def _least_locators(problem: Problem, options: Options) -> int:
+    """No fewer locators determine what all candidates can notice: each has so many rows at most."""
+    if not problem.determines:
+        return 0
+    rows = np.any(problem.candidates.rows[options.candidates], axis=2).sum(axis=1)
+    return -(-problem.candidates.freedoms // max(1, int(rows.max(initial=1))))
+
+
+def _least_elements(problem: Problem) -> int:
+    """No fewer options close without friction, with what stays: d + 1 rows do."""
+    if problem.closes != "without friction" or problem.each > 1:
+        return 0
+    return max(0, problem.candidates.dimension + 1 - len(problem.clamps))
 
 
 def _in_conflict(problem: Problem, options: Options, chosen: Mask) -> tuple[int, int] | None:

@@ -47,16 +47,26 @@ class Fewest:
 
 def fewest_over_ways(task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress) -> Fewest:
     """The fewest changes. What a design from this start gives has only to be matched."""
-    return _among_ways(problem, seed, progress, _as_designed(task, ways, problem, seed, progress))
+    designed = _as_designed(task, ways, problem, seed, progress, slides=False)
+    if problem.opens and designed.found > 1 and not problem.cancelled():
+        sliding = _as_designed(task, ways, problem, seed, progress, slides=True)
+        designed = sliding if sliding.found < designed.found else designed
+    return _among_ways(problem, seed, progress, designed)
 
 
-def _as_designed(task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress) -> Fewest:
+def _as_designed(task: Task, ways: Ways, problem: Problem, seed: int, progress: Progress, *, slides: bool) -> Fewest:
     """What the search for the best layout makes of this start, with all clamps that it had."""
     none = np.zeros(0, dtype=np.int64)
     new = problem.candidates.chosen(problem.new)
-    start = begun(task, new, ways, keep_all=True, leaves=True, opens=True)
+    start = begun(task, new, ways, keep_all=True, leaves=not slides, opens=True)
     as_begun = replace(
-        problem, locators=start.locators, clamps=start.others, spare=start.spare, leaves=True, opens=True
+        problem,
+        locators=start.locators,
+        clamps=start.others,
+        spare=start.spare,
+        leaves=True,
+        opens=True,
+        slides=slides,
     )
     found = None if start.conflict or problem.never_stopped is not None else search(as_begun, seed, progress).found
     if found is None:

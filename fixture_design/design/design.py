@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
 from fixture_design.arrays import Vector
-from fixture_design.design.attempt import Asked, attempt, better_of
+from fixture_design.design.attempt import Asked, attempt, better_of, leaves_straight, opens_all
 from fixture_design.design.fitting import fitting
-from fixture_design.design.plans import by_certainty, plans
+from fixture_design.design.plans import Plan, by_certainty, plans
 from fixture_design.design.result import DesignResult
 from fixture_design.design.task import Task
 from fixture_design.design.touching import candidates_of
@@ -48,8 +49,10 @@ def design(
     certain = False
     for plan in plans(task, ways):
         for some in by_certainty(candidates):
-            for keep_all in (True, False) if _may_let_go(task) else (True,):
-                found = attempt(asked, some, plan, keep_all=keep_all)
+            for slides, keep_all in _turns(task, plan):
+                if slides and best is not None and best.free is not None:
+                    break  # a motion that no candidate stops is free however the part comes out
+                found = attempt(asked, some, plan, keep_all=keep_all, slides=slides)
                 if left_out := len(candidates) - len(some):
                     note = f"{left_out} candidates on round or uncertain surfaces were left out"
                     found = replace(found, notes=(*found.notes, note))
@@ -86,6 +89,12 @@ def _not_yet_no(found: DesignResult, left_out: int) -> DesignResult:
         "(`part: {faceted: true}` says that every facet is meant as it is)"
     )
     return replace(found, satisfied=Answer.UNDECIDED, reason=reason)
+
+
+def _turns(task: Task, plan: Plan) -> list[tuple[bool, bool]]:
+    """What is tried in turn: whether the part slides on its way out, and whether what the start has is all kept."""
+    ways_out = (False, True) if leaves_straight(task, plan) and opens_all(plan) else (False,)
+    return list(product(ways_out, (True, False) if _may_let_go(task) else (True,)))
 
 
 def _may_let_go(task: Task) -> bool:

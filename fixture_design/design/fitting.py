@@ -95,14 +95,16 @@ def in_the_way(task: Task, ways: Ways, problem: Problem, found: Found, verdict: 
     """Candidates that the part runs into on its way out, shape (n,); None if it comes out past the locators chosen.
 
     What is in the way is the tip of a locator, as the verdict has it, or a tip, stem or body in the direction of the
-    verdict, or in that of the search. If one is, all candidates are asked at once, so that the next locator does not
-    stand where the same thing happens.
+    verdict, or in that of the search; where a direction is asked for, in this one. If one is, all candidates are asked
+    at once, so that the next locator does not stand where the same thing happens.
     """
     if found.out is None:
         return None
     new = found.locators[np.isin(found.locators, problem.new)]
     use = _ways_out(verdict)
     seen = None if use is None or use.obstacle is not None else use.direction
+    if task.limits.loading is not None:
+        seen = None
     tried = [direction for direction in (seen, found.out) if direction is not None]
     blocking = _tips(use, new, names)
     if not len(blocking) and any(_fits(task, ways, problem.candidates, new, direction).all() for direction in tried):

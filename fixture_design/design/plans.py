@@ -29,13 +29,18 @@ class Plan:
 
 
 def plans(task: Task, ways: Ways) -> Iterator[Plan]:
-    """What the task requires; for a bare part closure without friction, then with friction, where it may spin."""
+    """What the task requires; for a bare part closure without friction, then with friction, where it may spin.
+
+    Candidates that were chosen, and leave motions free that others would stop, are not made up for by friction.
+    """
     if task.require is not None:
         yield Plan(task.require, task.friction)
         return
     leaving: tuple[Requirement, ...] = tuple(word for word in LEAVING if word in ways.answers)
     without: Require = {"locators": ("deterministic", "strongly_accessible", *leaving), "all": ("form_closure",)}
     yield Plan(without, task.friction)
+    if task.candidates.chosen_by_hand:
+        return
     reason = (
         "without friction no layout among these candidates closes the part; with friction one does, and the locators "
         "let it move freely"

@@ -32,6 +32,7 @@ class Problem:
         determines: whether the locators must determine the part, so that there are as many rows as freedoms.
         enters: whether the locators must leave the part some motion.
         opens: whether some motion must leave all locators at once, be it a screw.
+        slides: whether the part may slide along locators on its straight way out, although some motion leaves all.
         closes: None, or whether all must close, and whether "with friction".
         features: what accuracy is measured by; None for the volume.
         generous: whether friction cones are taken a little larger than they are, for bounds, and not smaller.
@@ -52,6 +53,7 @@ class Problem:
     determines: bool = True
     enters: bool = True
     opens: bool = True
+    slides: bool = False
     closes: str | None = "without friction"
     features: Features | None = None
     standing: Standing | None = None
@@ -69,6 +71,11 @@ class Problem:
     def clampable(self) -> Indices:
         """Those that may become a clamp: new ones, and clamps of the start."""
         return np.concatenate([self.new, np.array(self.spare, dtype=np.int64)])
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether the straight way out must leave all locators at once."""
+        return self.leaves and self.opens and not self.slides
 
     @property
     def kept(self) -> Indices:

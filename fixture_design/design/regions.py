@@ -69,12 +69,13 @@ def ways_out(problem: Problem, seed: int) -> tuple[list[tuple[Point | None, Mask
     said: Mask = np.any(flat_normals, axis=1)
     unit, which = different(flat_normals[said])
     loading = problem.limits.loading
-    found, complete = cells(unit, None if loading is None else -loading, seed, sliding=not problem.opens)
+    asked = None if loading is None else -loading / np.linalg.norm(loading)
+    found, complete = cells(unit, asked, seed, sliding=not problem.lets_go)
     ways: list[tuple[Point | None, Mask]] = []
     for cell in found[:MOST_BOUNDED]:
         leaves = np.ones(len(flat_normals), dtype=bool)
         leaves[said] = cell.leaves[which]
-        ways.append((cell.direction, np.all(leaves.reshape(len(several), -1), axis=1)))
+        ways.append((cell.direction if asked is None else asked, np.all(leaves.reshape(len(several), -1), axis=1)))
     return ways, complete and len(found) <= MOST_BOUNDED
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Point, Rows
+from fixture_design.arrays import Indices, Point, Rows
 from fixture_design.cones.kernel import tucker_partition
 from fixture_design.design.candidates import Candidates, flat
 from fixture_design.design.steps import Step
@@ -81,6 +81,11 @@ def _said(rows: Rows, each: int) -> tuple[Rows, np.ndarray]:
     """Rows that say something, and the number of the element each is of."""
     kept = rows.any(axis=1)
     return np.ascontiguousarray(rows[kept]), (np.arange(len(rows)) // each)[kept]
+
+
+def bound_both_ways(candidates: Candidates, chosen: Indices) -> bool:
+    """Whether there is a balance among locators, so that no motion leaves all of them."""
+    return bool(_bound(candidates, chosen.tolist(), leaves=False))
 
 
 def _bound(candidates: Candidates, chosen: Sequence[int], leaves: bool) -> list[int]:

@@ -24,6 +24,7 @@ from fixture_design.design.moving import moved_while_closed
 from fixture_design.design.pressing import least_bound, least_here, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
+from fixture_design.design.removing import bound_both_ways
 from fixture_design.design.ways import Progress
 
 #: Restarts in one region, and regions that are searched for better layouts of the same size.
@@ -99,6 +100,8 @@ def _better_within(
         before = best
         first = _reacting(problem, region, rng) if restart == 0 else None
         for locators, clamps in _sets(problem, region, rng, best, first):
+            if problem.slides and bound_both_ways(problem.candidates, locators):
+                continue  # no motion leaves all of them
             found = _finished(problem, region, locators, clamps, best)
             if best is None or found.score(problem.objective) < best.score(problem.objective):
                 best = found

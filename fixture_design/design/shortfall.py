@@ -24,7 +24,7 @@ def bound_of(problem: Problem, outcome: Outcome) -> Bound | None:
     single = problem.each == 1 and problem.closes == "without friction"
     elements = max(locators + outcome.least_clamps, problem.candidates.dimension + 1 if single else 0)
     clamps = max(0, outcome.least_clamps - problem.supporting)
-    letting_go = problem.leaves and problem.opens
+    letting_go = problem.lets_go
     return Bound(locators, clamps, elements, found, outcome.complete, len(problem.candidates), letting_go)
 
 
@@ -71,7 +71,7 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
         return _not_held(problem, outcome, bound, start)
     if bound is None:
         reason = "no straight way out leaves enough places for locators that determine the part"
-        if complete and problem.leaves and problem.opens:
+        if complete and problem.lets_go:
             complete = least_clamps_sliding(problem, seed, 1) == np.inf
             reason += " and is not only slid out of" if not complete else ""
         answer = Answer.NO if complete else Answer.UNDECIDED
@@ -79,17 +79,21 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     for what, least, most in (("locators", bound.locators, limits.locators), ("clamps", bound.clamps, limits.clamps)):
         if most is not None and least > most:
             certain = bound.complete and (what == "clamps" or problem.determines)
-            if certain and what == "clamps" and problem.leaves and problem.opens:
+            if certain and what == "clamps" and problem.lets_go:
                 allowed = most + problem.supporting
                 certain = least_clamps_sliding(problem, seed, allowed + 1) > allowed
             answer = Answer.NO if certain else Answer.UNDECIDED
             reason = f"at least {least} {what} are needed among these candidates, and at most {most} are allowed"
-            if not certain and problem.leaves and problem.opens:
+            if not certain and problem.lets_go:
                 reason += ", where some direction is to leave all locators at once"
             return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
     needed = f"{bound.locators} locators and {bound.clamps} clamps"
     needed = needed if outcome.least_elements is None else f"{bound.elements} elements"
     reason = f"no layout was found; at least {needed} are needed"
+    if problem.limits.spacing > 0:
+        reason += f", at least {problem.limits.spacing:g} m from each other"
     if problem.standing is not None:
         reason += ", with stems and bodies out of each other's way"
+    if problem.cancelled():
+        reason = "the search was stopped before it found a layout"
     return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)

@@ -61,6 +61,12 @@ class CandidateRules:
     stem: StemSizes = field(default_factory=StemSizes)
     tolerance: float | None = None
 
+    @property
+    def chosen_by_hand(self) -> bool:
+        """Whether they are only on some of the part's surface."""
+        everywhere = self.facets is None and not self.keep_out and self.points is None and self.grid is None
+        return not everywhere
+
 
 @dataclass(frozen=True, eq=False)
 class Limits:

@@ -92,6 +92,23 @@ def test_two_fixed_locators_that_pinch_the_part_are_a_conflict() -> None:
     assert "A, B must stay" in (result.reason or "")
 
 
+def test_two_fixed_locators_that_a_turn_leaves_and_the_part_slides_between_are_kept() -> None:
+    spots = polygon(RECTANGLE, 5)
+    elements = [
+        Element("A", "locator", spots.points[0], fixed=True),
+        Element("B", "locator", spots.points[10], fixed=True),
+    ]
+    assert abs(spots.points[0][0] - spots.points[10][0]) > 0.1
+    result = started(spots, elements)
+    assert result.satisfied is Answer.YES
+    assert result.layout is not None
+    assert result.verdict is not None
+    assert check(result.verdict) == []
+    assert [e for e in result.layout.elements if e.fixed] == elements
+    assert result.out is not None
+    assert np.abs(result.out).round(9).tolist() == [1, 0]
+
+
 def test_of_a_circuit_that_binds_one_leaves_and_the_record_names_it() -> None:
     spots = polygon(RECTANGLE, 5)
     some = candidates(spots)
