@@ -10,6 +10,8 @@ from fixture_design.viewing.markup import Markup, tag
 
 #: Bars of a histogram, and its size [px].
 _BARS, _WIDTH, _HEIGHT = 40, 480, 120
+#: Margins that differ by less than this part of them are one bar: there are no numbers between for others [-].
+_ONE = 1e-9
 #: Room for the numbers below [px].
 _FOOT = 18
 
@@ -18,7 +20,7 @@ def histogram(margins: Sequence[float], title: str) -> Markup:
     """How often which margin occurs; bars of margins up to zero are in the colour of a no."""
     values = np.asarray(margins, dtype=np.float64)
     low, high = float(values.min()), float(values.max())
-    if low == high:
+    if high - low <= _ONE * max(abs(low), abs(high)):
         low, high = low - 0.5 * abs(low or 1.0), high + 0.5 * abs(high or 1.0)
     counts, edges = np.histogram(values, _BARS, (low, high))
     step = _WIDTH / _BARS

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from fixture_design.batch.against import Change, Comparison
+from fixture_design.batch.against import Change, Comparison, losses_in_words
 from fixture_design.batch.collected import MOST_ROWS, Row, collected
 from fixture_design.batch.histogram import histogram
 from fixture_design.batch.outcome import OUTCOMES
@@ -130,8 +130,8 @@ def _off(sweep: Robustness) -> Markup:
 
 def _comparison(comparison: Comparison) -> Markup:
     said = (
-        f"{comparison.same} layouts are in both; {len(comparison.changed)} changed verdict, {len(comparison.lost)} "
-        f"margins were lost, {len(comparison.new)} layouts are new, {len(comparison.gone)} are gone."
+        f"{comparison.same} layouts are in both; {len(comparison.changed)} changed verdict, "
+        f"{losses_in_words(comparison)}, {len(comparison.new)} layouts are new, {len(comparison.gone)} are gone."
     )
     rows = [_change(change) for change in (*comparison.changed, *comparison.lost)[:MOST_ROWS]]
     changes = table(["layout", "source", "what", "before", "after"], rows, class_="sortable") if rows else ""

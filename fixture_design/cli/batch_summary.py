@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from fixture_design.batch import Robustness, Summary
-from fixture_design.batch.against import Comparison
+from fixture_design.batch.against import Comparison, losses_in_words
 from fixture_design.cli.messages import printable
 
 #: Changes that are told one by one.
@@ -25,7 +25,7 @@ def print_summary(summary: Summary, comparison: Comparison | None = None) -> Non
     if comparison is not None:
         typer.echo(
             f"against the earlier run: {len(comparison.changed)} of {comparison.same} changed verdict, "
-            f"{len(comparison.lost)} margins were lost, {len(comparison.new)} layouts are new, "
+            f"{losses_in_words(comparison)}, {len(comparison.new)} layouts are new, "
             f"{len(comparison.gone)} are gone"
         )
         told = (*comparison.changed, *comparison.lost)

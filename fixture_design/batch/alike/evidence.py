@@ -46,7 +46,8 @@ def evidence_of(group: GroupPlan, numbers: Numbers, decided: Decided) -> Evidenc
     levers = numbers.points - numbers.reference[:, None]
     reported = scaled_rows(levers[:, owners], numbers.normals[:, which], numbers.length[:, None, None])
     sound = numbers.fit & np.isfinite(reported).all(axis=(1, 2))
-    reported = np.where(sound[:, None, None], reported, 0.0)  # one bad layout would stop the others
+    # one bad layout would stop the others; and the order in memory decides about last digits
+    reported = np.ascontiguousarray(np.where(sound[:, None, None], reported, 0.0))
     motions, weights = decided.closures.motions, decided.closures.weights.reshape(count, size)
     weights = weights / np.where(decided.lengths[:, 0] > 0, decided.lengths[:, 0], 1.0)
     total = weights.sum(axis=1, keepdims=True)
