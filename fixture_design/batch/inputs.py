@@ -60,11 +60,15 @@ def _files_of(path: Path, besides: Path | None) -> list[Path]:
     matches = [Path(match) for match in sorted(glob(str(path), recursive=True))]
     if not matches:
         raise FileFormatError("no file matches this pattern", source=path)
-    files = [match for match in matches if not match.is_dir() and not _same(match, besides)]
-    found = {folder: _layouts_in(folder, besides) for folder in matches if folder.is_dir()}
-    if not files and not any(found.values()):
+    files = [file for match in matches if not _same(match, besides) for file in _matched(match, besides)]
+    if not files and any(match.is_dir() for match in matches):
         raise FileFormatError("there are no layouts in what matches this pattern", source=path)
-    return [file for match in matches for file in (found[match] if match in found else [match] if match in files else [])]
+    return files
+
+
+def _matched(match: Path, besides: Path | None) -> list[Path]:
+    """A folder that a pattern happens to match need have no layouts."""
+    return _layouts_in(match, besides) if match.is_dir() else [match]
 
 
 def _layouts_in(folder: Path, besides: Path | None) -> list[Path]:

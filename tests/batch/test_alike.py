@@ -23,6 +23,7 @@ from fixture_design.layout import (
     Evidence,
     Finding,
     GroupVerdict,
+    Layout,
     Motion,
     RequirementVerdict,
     Singular,
@@ -407,3 +408,45 @@ def test_margins_do_not_depend_on_who_looks_at_a_layout() -> None:
             for name, group in expected["groups"].items():
                 for question in QUESTIONS:
                     assert found["groups"][name][question]["margin"] == group[question]["margin"], (family, place)
+
+
+def test_names_that_look_like_marks() -> None:
+    """A contact may be called as the blanks of a record are."""
+    names = ["@source", "123.000007", "@m0", "@name", "@@input", "124.000017", "%s"]
+    items = items_of("smooth")
+    texts = [item.text or b"" for item in items]
+    for k, name in enumerate(names):
+        texts = [text.replace(b'"C%d"' % k, json.dumps(name).encode()) for text in texts]
+    items = [item._replace(text=text) for item, text in zip(items, texts, strict=True)]
+    for detail in ("brief", "full"):
+        together = Alike(detail).entries(items)  # type: ignore[arg-type]
+        assert len(together) > COUNT // 3
+        for place, entry in together[:5]:
+            found, expected = record(entry.line), record(entry_of(items[place], PartCache(), detail).line)  # type: ignore[arg-type]
+            assert {n: g["contacts"] for n, g in found["groups"].items()} == {
+                n: g["contacts"] for n, g in expected["groups"].items()
+            }
+            assert [c["name"] for c in found.get("contacts", ())] == [c["name"] for c in expected.get("contacts", ())]
+            assert found["source"] == items[place].source
+
+
+def test_interleaved_sets_of_names_are_all_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nine kinds of one shape, one after the other: each is read as a layout once."""
+    items = []
+    for number, item in enumerate(items_of("smooth") * 4):
+        text = (item.text or b"").replace(b'"C', b'"K%d ' % (number % 9))
+        items.append(item._replace(source=f"l:{number}", text=text))
+    read: list[str] = []
+
+    def counted(item: Item, **keys: bool) -> Layout:
+        read.append(item.source)
+        return layout_of(item, **keys)
+
+    monkeypatch.setattr("fixture_design.batch.alike.look.layout_of", counted)
+    assert len(Alike("brief").entries(items)) > 90
+    assert len(read) == 9
+
+
+def test_a_source_that_is_no_text() -> None:
+    items = [item._replace(source="l\udcff.jsonl:1") for item in items_of("smooth")[:4]]
+    assert all(b"l\\udcff.jsonl" in entry.line for _, entry in Alike("brief").entries(items))

@@ -175,5 +175,10 @@ def _filled(
         given = map(repr, numbers)
         line = text.between % tuple([words[blank] if isinstance(blank, str) else next(given) for blank in text.blanks])
         margin = float(table.margins[row])
-        found.append((pile.places[row], Entry(line.encode("utf-8", errors="backslashreplace"), text.outcome, None if isnan(margin) else margin)))
+        found.append(
+            (
+                pile.places[row],
+                Entry(line.encode("utf-8", errors="backslashreplace"), text.outcome, None if isnan(margin) else margin),
+            )
+        )
     return found

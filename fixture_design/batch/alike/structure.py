@@ -113,7 +113,7 @@ class Structures:
 
 
 def _key(cut: Cut, named: int | None) -> tuple[object, ...]:
-    """What lines of one structure share and others hardly do: how much there is of it, and the texts but for the name."""
+    """What lines of one structure share: how much there is of it, and the texts in quotes but for the name."""
     texts = cut.quoted if named is None else [*cut.quoted[:named], *cut.quoted[named + 1 :]]
     return cut.key, named, b'"'.join(texts)
 

@@ -109,7 +109,10 @@ def record_text(
     record = verdict_record(verdict, detail)
     run = record["run"]
     # these come last, as `records` has them
-    last = ({"surface_gap": mark("surface gap", 1)[0]} if swept else {}) | {"input": mark.word("input"), "time": mark("time", 1)[0]}
+    last = ({"surface_gap": mark("surface gap", 1)[0]} if swept else {}) | {
+        "input": mark.word("input"),
+        "time": mark("time", 1)[0],
+    }
     record["run"] = {key: value for key, value in run.items() if key != "input"} | last
     entry = entry_of_record(record)
     return _cut(dumps(record) + "\n", mark, entry.outcome)
