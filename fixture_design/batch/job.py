@@ -53,12 +53,19 @@ def local_workers(detail: Detail = "full", jobs: int | None = None, limit: float
     Raises:
         InputError: numbers that cannot be.
     """
+    check_numbers(jobs, limit)
+    most = MOST_A_PROCESSOR * processors()
+    return Crew(LookAt(verifying, detail), min(jobs or processors(), most), limit)
+
+
+def check_numbers(jobs: Any, limit: Any) -> None:
+    """Raises:
+    InputError: no number of processes, or no limit in seconds.
+    """
     if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
         raise InputError("the number of worker processes cannot be", found=repr(jobs), expected="1 or more, or None")
     if limit is not None and not (isinstance(limit, int | float) and 0 < limit < inf):
         raise InputError("the limit of time cannot be", found=repr(limit), expected="seconds, more than 0, or None")
-    most = MOST_A_PROCESSOR * processors()
-    return Crew(LookAt(verifying, detail), min(jobs or processors(), most), limit)
 
 
 def detail_wanted(brief: bool, sets: bool) -> Detail:
