@@ -24,7 +24,14 @@ import numpy as np
 
 from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Rows, Vector, Weights
-from fixture_design.cones.kernel import TuckerPartition, closure_bound, nonnegative_least_squares, tucker_partition
+from fixture_design.cones.kernel import (
+    Closure,
+    TuckerPartition,
+    closure_bound,
+    closure_test,
+    nonnegative_least_squares,
+    tucker_partition,
+)
 from fixture_design.tolerances import Tolerances
 
 #: Weights prove closure well enough if their bound is this part of what the hull's facets say [-].
@@ -50,8 +57,8 @@ class Bounds:
 def bounds_of(rows: Rows, errors: Weights, tolerances: Tolerances) -> Bounds:
     """Bounds on s for unit rows.
 
-    The tolerance that finds the proofs is moved down and up by a factor of 100 where they do not settle the sign; the
-    bounds themselves do not depend on it.
+    The closure test comes first, as where many layouts are decided together. The tolerance that finds the proofs is
+    moved down and up by a factor of 100 where they do not settle the sign; the bounds themselves do not depend on it.
 
     Args:
         rows: shape (m, d), unit; m = 0 gives s = -1 (every motion is free).
@@ -59,7 +66,9 @@ def bounds_of(rows: Rows, errors: Weights, tolerances: Tolerances) -> Bounds:
     """
     if not len(rows):
         return Bounds(-np.inf, -1.0, np.eye(rows.shape[1])[0], None)
-    bounds = Bounds(-np.inf, np.inf, None, None)
+    bounds = _bounds_of_test(closure_test(rows, tolerances), rows, errors)
+    if _settled(bounds, tolerances):
+        return bounds
     for factor in (1.0, 0.01, 100.0):
         bounds = _tighter(bounds, _bounds_from(tucker_partition(rows, tolerances.tie * factor), rows, errors))
         if _settled(bounds, tolerances):
@@ -78,6 +87,17 @@ def _settled(bounds: Bounds, tolerances: Tolerances) -> bool:
 def _tighter(first: Bounds, second: Bounds) -> Bounds:
     lower, upper = max(first, second, key=lambda b: b.lower), min(first, second, key=lambda b: b.upper)
     return Bounds(lower.lower, upper.upper, upper.motion, lower.weights)
+
+
+def _bounds_of_test(test: Closure, rows: Rows, errors: Weights) -> Bounds:
+    """The bounds of a closure test, wider by as much as normals' errors move the rows."""
+    if not errors.any():
+        return Bounds(test.lower, test.upper, test.motion, test.weights)
+    upper = np.inf if test.motion is None else float(np.max(rows @ test.motion + errors))
+    if test.weights is None:
+        return Bounds(-np.inf, upper, test.motion, None)
+    slack = float(errors.max()) if test.lower > 0 else float(test.weights @ errors)
+    return Bounds(test.lower - slack, upper, test.motion, test.weights)
 
 
 def _bounds_from(partition: TuckerPartition, rows: Rows, errors: Weights) -> Bounds:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fixture_design.batch.outcome import OUTCOMES, outcome_of, required_margins
-from fixture_design.batch.records import Record
+from fixture_design.batch.records import Record, detail_of
 from fixture_design.batch.results import key_of, records_in
 from fixture_design.errors import FileFormatError
 from fixture_design.tolerances import DEFAULT
@@ -43,6 +43,7 @@ class Comparison:
     Attributes:
         changed: layouts of another outcome, what became worse first.  lost: margins, the largest loss first.
         new, gone: names of the layouts that only one of them has.  same: how many layouts are in both.
+        unlike: how many of these have margins in only one of the runs, which was brief: they cannot be compared.
     """
 
     changed: list[Change] = field(default_factory=list)
@@ -50,18 +51,20 @@ class Comparison:
     new: list[str] = field(default_factory=list)
     gone: list[str] = field(default_factory=list)
     same: int = 0
+    unlike: int = 0
 
     def add(self, now: _Known, was: _Known) -> None:
         """A layout that is in both."""
         self.same += 1
         if now.outcome != was.outcome:
             self.changed.append(Change(now.name, now.source, "verdict", was.outcome, now.outcome))
+        self.unlike += None not in (now.brief, was.brief) and now.brief != was.brief
         self.lost += _losses(now, was.margins)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON."""
         lists = {key: [vars(change) for change in getattr(self, key)] for key in ("changed", "lost")}
-        return {**lists, "new": self.new, "gone": self.gone, "same": self.same}
+        return {**lists, "new": self.new, "gone": self.gone, "same": self.same, "unlike": self.unlike}
 
 
 @dataclass(frozen=True)
@@ -72,11 +75,13 @@ class _Known:
     name: str
     outcome: str
     margins: tuple[tuple[str, float | None], ...]
+    brief: bool | None
 
     @classmethod
     def of(cls, record: Record) -> _Known:
         source, name = key_of(record)
-        return cls(source, name, outcome_of(record), tuple(required_margins(record)))
+        brief = None if "error" in record else detail_of(record) == "brief"
+        return cls(source, name, outcome_of(record), tuple(required_margins(record)), brief)
 
 
 class _Waiting:
@@ -100,6 +105,15 @@ class _Waiting:
 
     def all(self) -> list[_Known]:
         return [known for some in self._by_key.values() for known in some]
+
+
+def losses_in_words(found: Comparison) -> str:
+    """ "3 margins were lost"; where one of the runs was brief, that nobody knows."""
+    lost = f"{len(found.lost)} margin{' was' if len(found.lost) == 1 else 's were'} lost"
+    if not found.unlike:
+        return lost
+    which = "all" if found.unlike == found.same else str(found.unlike)
+    return f"{lost}, not compared for {which}, since one of the runs was brief"
 
 
 def compare(new: Path, old: Path) -> Comparison:

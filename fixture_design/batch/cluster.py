@@ -6,6 +6,7 @@ worker is looked at again by Dask; an item on which workers die alone has the er
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
@@ -16,7 +17,7 @@ from typing import Any
 
 from fixture_design.batch.crew import CHUNK_SECONDS, FIRST_CHUNK, LARGEST_CHUNK
 from fixture_design.batch.item import Entry, Item
-from fixture_design.batch.records import Detail, WorkerError, failure
+from fixture_design.batch.records import Detail, WorkerError, given_up
 from fixture_design.batch.worker import Look, verifying
 from fixture_design.errors import InputError
 from fixture_design.version import VERSION
@@ -25,6 +26,8 @@ from fixture_design.version import VERSION
 _AHEAD = 3
 #: Seconds for the scheduler to answer, and between two looks at whether to stop.
 _ANSWER, _TICK = 20.0, 0.25
+#: A protocol with a host, or a host with a port; and one to show.
+_ADDRESS, _LIKE = re.compile(r"[a-z]+://[^/\s]+|[^/\s:]+:\d+$"), "an address such as tcp://10.0.0.1:8786"
 
 #: A worker with several threads looks at one chunk at a time: what it remembers is not made for more.
 _ONE_AT_A_TIME = Lock()
@@ -46,12 +49,12 @@ class Cluster:
             raise InputError(
                 "a cluster needs dask.distributed", expected="pip install 'fixture-design[cluster]'"
             ) from cause
+        if not _ADDRESS.match(address):  # Dask would look for a host of that name, for long
+            raise InputError(f"no Dask scheduler answers at {address!r}", expected=_LIKE)
         try:
             self._client: Any = Client(address, timeout=_ANSWER, set_as_default=False)
         except (OSError, ValueError, TypeError) as cause:
-            raise InputError(
-                f"no Dask scheduler answers at {address!r}", expected="an address such as tcp://10.0.0.1:8786"
-            ) from cause
+            raise InputError(f"no Dask scheduler answers at {address!r}", expected=_LIKE) from cause
         self._detail, self._look = detail, look
         try:
             self._threads = self._checked(address)
@@ -80,7 +83,7 @@ class Cluster:
                 return
             under_way.popleft()
             if isinstance(outcome, BaseException):
-                yield from self._one_by_one(chunk, stop)
+                yield from self._one_by_one(chunk, outcome, stop)
                 continue
             entries, seconds = outcome
             fitting = int(len(chunk) * CHUNK_SECONDS / max(seconds, CHUNK_SECONDS / LARGEST_CHUNK))
@@ -95,38 +98,44 @@ class Cluster:
         return self._client.submit(look_at, self._look, self._detail, chunk, pure=False)
 
     def _outcome(self, future: Any, stop: Callable[[], bool]) -> tuple[list[Entry], float] | BaseException | None:
-        """What a chunk came to: its entries, or that workers die on it; None if it is not waited for any longer."""
-        from distributed import KilledWorker  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
+        """What a chunk came to: its entries, or why there are none; None if it is not waited for any longer."""
         from distributed import TimeoutError as NotYet  # noqa: PLC0415  # pyright: ignore[reportMissingImports]
 
         while not stop():
             try:
                 return future.result(timeout=_TICK)
-            except NotYet:
-                if self._client.status != "running":
-                    raise WorkerError("the cluster is gone; what it had found is saved") from None
-            except KilledWorker as died:
-                return died
+            except Exception as error:
+                if future.status == "error":  # workers died on it, or looking at it went wrong
+                    return error
+                if not isinstance(error, NotYet) or self._client.status != "running":
+                    raise WorkerError("the cluster is gone; what it had found is saved") from error
         return None
 
-    def _one_by_one(self, chunk: list[Item], stop: Callable[[], bool]) -> Iterator[list[tuple[Item, Entry]]]:
-        """The items of a chunk on which workers die, each alone."""
-        futures = [self._submit([item]) for item in chunk] if len(chunk) > 1 else []
-        if not futures:
-            error = WorkerError("the processes that looked at it died, on one worker of the cluster after the other")
-            yield [(chunk[0], failure(chunk[0], error))]
-        for item, future in zip(chunk, futures, strict=False):
-            outcome = self._outcome(future, stop)
+    def _one_by_one(
+        self, chunk: list[Item], why: BaseException, stop: Callable[[], bool]
+    ) -> Iterator[list[tuple[Item, Entry]]]:
+        """The items of a chunk on which workers die or looking goes wrong, each alone.
+
+        One after the other: Dask blames whatever waits on a worker for its death.
+        """
+        if len(chunk) == 1:
+            yield [(chunk[0], given_up(chunk[0], _in_words(why)))]
+            return
+        for item in chunk:
+            outcome = self._outcome(self._submit([item]), stop)
             if outcome is None:
                 return
             if isinstance(outcome, BaseException):
-                yield from self._one_by_one([item], stop)
+                yield from self._one_by_one([item], outcome, stop)
             else:
                 yield [(item, outcome[0][0])]
 
     def _checked(self, address: str) -> int:
         """How many threads there are, after all workers have said that they have the same version."""
-        threads = sum(self._client.nthreads().values())
+        try:
+            threads = sum(self._client.nthreads().values())
+        except OSError as cause:  # also that time is over
+            raise InputError(f"no Dask scheduler answers at {address!r}", expected=_LIKE) from cause
         if not threads:
             raise InputError(f"the cluster at {address!r} has no workers", expected="at least one `dask worker`")
         try:
@@ -137,6 +146,13 @@ class Cluster:
             other = ", ".join(sorted(versions - {VERSION}))
             raise InputError(f"workers of the cluster at {address!r} have version {other}; this is {VERSION}")
         return threads
+
+
+def _in_words(why: BaseException) -> WorkerError:
+    """What a single item's task came to; `KilledWorker` by its name, since the package may not be there."""
+    if type(why).__name__ == "KilledWorker":
+        return WorkerError("the processes that looked at it died, on one worker of the cluster after the other")
+    return WorkerError(f"looking at it went wrong on the cluster: {type(why).__name__}: {why}")
 
 
 def look_at(look: Callable[[Detail], Look], detail: Detail, chunk: Sequence[Item]) -> tuple[list[Entry], float]:

@@ -8,23 +8,19 @@ likewise, and an item that takes too long alone has the error as its record.
 
 from __future__ import annotations
 
-import os
 import signal
-import sys
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
-from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from time import monotonic
-from types import ModuleType
 
 from fixture_design.batch.item import Entry, Item
-from fixture_design.batch.records import TimeLimitError, WorkerError, failure
-from fixture_design.batch.worker import Known, LookAt, work
+from fixture_design.batch.records import TimeLimitError, WorkerError, given_up
+from fixture_design.batch.starting import started
+from fixture_design.batch.worker import Known, LookAt
 from fixture_design.errors import FixtureDesignError
 
 #: A chunk should take a worker about so long [s]: long enough that handing it over costs nothing.
@@ -39,8 +35,8 @@ DEATHS = 2
 _FAILED_STARTS = 3
 #: Longest time between two looks at whether to stop [s].
 _TICK = 0.25
-#: Libraries that would otherwise start a thread a processor in each worker.
-_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+#: Processes that begin at a time: each takes seconds of a processor to load what it needs.
+MOST_STARTING = 2
 
 
 @dataclass
@@ -77,6 +73,9 @@ class Crew:
         self._look_at, self._jobs, self._limit = look_at, jobs, limit
         self._workers: list[_Worker] = []
         self._again: deque[_Task] = deque()
+        self._drawn: deque[_Task] = deque()
+        self._waiting: deque[tuple[int, Item]] = deque()  # drawn, and not given back in order
+        self._exhausted = False
         self._known: dict[int, Entry] = {}
         self._chunk = FIRST_CHUNK
         self._failed_starts = 0
@@ -90,20 +89,21 @@ class Crew:
             WorkerError: processes end before they begin to work.
         """
         numbered = enumerate(items)
-        waiting: deque[tuple[int, Item]] = deque()  # not yet given out in order
-        exhausted = False
+        self._exhausted = False
         while not stop():
-            exhausted = self._give(numbered, waiting, exhausted)
-            ready: list[tuple[Item, Entry]] = []
-            while waiting and waiting[0][0] in self._known:
-                number, item = waiting.popleft()
-                ready.append((item, self._known.pop(number)))
-            if ready:
+            self._give(numbered)
+            if ready := self._ready():
                 yield ready
-            if exhausted and not waiting:
+            if self._exhausted and not self._waiting:
                 return
-            self._hear()
+            try:
+                self._hear()
+            except WorkerError:
+                if not stop():  # what ends this process may have ended those before it
+                    raise
             self._end_late()
+        if ready := self._ready():  # heard in the meantime
+            yield ready
 
     def close(self) -> None:
         """Ends all workers, at once."""
@@ -111,33 +111,40 @@ class Crew:
             self._kill(worker)
         self._workers.clear()
 
-    def _give(self, numbered: Iterator[tuple[int, Item]], waiting: deque[tuple[int, Item]], exhausted: bool) -> bool:
-        """Something to do for every idle worker; returns whether the items have come to their end."""
-        while len(self._workers) < self._jobs:
-            self._workers.append(self._start())
-        for worker in self._workers:
-            if worker.task is not None or not worker.started:
-                continue
-            if self._again:
-                self._hand(worker, self._again.popleft())
-            elif not exhausted and len(waiting) < WINDOW * self._jobs * self._chunk:
-                chunk = list(islice(numbered, self._chunk))
-                waiting.extend(chunk)
-                exhausted = not chunk
-                if chunk:
-                    self._hand(worker, _Task(chunk))
-        return exhausted
+    def _ready(self) -> list[tuple[Item, Entry]]:
+        """Items from the first one on whose entries are known, each once."""
+        ready: list[tuple[Item, Entry]] = []
+        while self._waiting and self._waiting[0][0] in self._known:
+            number, item = self._waiting.popleft()
+            ready.append((item, self._known.pop(number)))
+        return ready
 
-    def _start(self) -> _Worker:
-        context = get_context("spawn")
-        # when it starts the tracker lets interrupts through again, also to the process that is started next
-        resource_tracker.ensure_running()
-        ours, theirs = context.Pipe()
-        process = context.Process(target=work, args=(theirs, self._look_at), daemon=True)
-        with _one_thread(), _without_interrupts(), _without_main():
-            process.start()
-        theirs.close()  # so that the end of the process is the end of the pipe
-        return _Worker(process, ours)
+    def _give(self, numbered: Iterator[tuple[int, Item]]) -> None:
+        """Something to do for every idle worker; another worker where there is more to do than those can take."""
+        for worker in list(self._workers):
+            if worker.task is None and worker.started:
+                self._draw(numbered, 1)
+                if not (self._again or self._drawn):
+                    return
+                self._hand(worker, (self._again or self._drawn).popleft())
+        beginning = sum(not worker.started for worker in self._workers)
+        while len(self._workers) < self._jobs and beginning < MOST_STARTING:
+            self._draw(numbered, beginning + 1)
+            if len(self._again) + len(self._drawn) <= beginning:
+                return
+            self._workers.append(_Worker(*started(self._look_at)))
+            beginning += 1
+
+    def _draw(self, numbered: Iterator[tuple[int, Item]], wanted: int) -> None:
+        """Makes chunks until there are so many to hand out, the items end, or there are enough under way."""
+        while len(self._again) + len(self._drawn) < wanted and not self._exhausted:
+            if len(self._waiting) >= WINDOW * max(len(self._workers), 1) * self._chunk:
+                return
+            chunk = list(islice(numbered, self._chunk))
+            self._exhausted = not chunk
+            self._waiting.extend(chunk)
+            if chunk:
+                self._drawn.append(_Task(chunk))
 
     def _hand(self, worker: _Worker, task: _Task) -> None:
         worker.task, worker.left = task, dict.fromkeys(range(len(task.numbered)))
@@ -214,51 +221,13 @@ class Crew:
             self._workers.remove(worker)
 
     def _fail(self, number: int, item: Item, error: FixtureDesignError) -> None:
-        self._known[number] = failure(item, error)
+        self._known[number] = given_up(item, error)
 
     @staticmethod
     def _kill(worker: _Worker) -> None:
         worker.process.kill()
         worker.process.join()
         worker.connection.close()
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes started in here use one thread each, unless the user decided otherwise."""
-    added = [name for name in _ONE_THREAD if name not in os.environ]
-    os.environ.update(dict.fromkeys(added, "1"))
-    try:
-        yield
-    finally:
-        for name in added:
-            del os.environ[name]
-
-
-@contextmanager
-def _without_main() -> Iterator[None]:
-    """Processes started in here do not import the script that runs: workers have no use for it, and it may be one that
-    cannot be imported (from a pipe), or that would start all over (without `if __name__ == "__main__"`).
-    """
-    script = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = script
-
-
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Processes started in here never hear of Ctrl-C, not even while they begin; this one hears of it afterwards."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _end_of(code: int | None) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 from fixture_design.batch.item import Item
 from fixture_design.batch.reading import values_of
 from fixture_design.errors import InputError
-from fixture_design.geometry.input_files import with_meshes
+from fixture_design.geometry.input_files import files_named_in
 
 #: Files whose hashes are kept; a library of layouts names the same few again and again.
 _KEPT = 4096
@@ -20,11 +20,21 @@ _KEPT = 4096
 _FILE_KEYS = (b"urdf", b"mesh", b"step", b"path")
 
 
-def input_hash(item: Item) -> str:
-    """SHA-256 of an item's text, its variant's number, and the files it names with their meshes."""
+def text_hash(item: Item) -> str:
+    """SHA-256 of an item's text and its variant's number: known without reading what the text says."""
+    return _of_text(item).hexdigest()
+
+
+def _of_text(item: Item) -> Any:
     digest = hashlib.sha256(b"" if item.text is None else item.text)
     if item.variant is not None:
         digest.update(b"\0variant %d" % item.variant)
+    return digest
+
+
+def input_hash(item: Item) -> str:
+    """SHA-256 of an item's text, its variant's number, and the files it names with their meshes."""
+    digest = _of_text(item)
     if item.text is not None and any(key in item.text for key in _FILE_KEYS):
         for file in files_named(values_of(item), Path(item.source).parent):
             digest.update(b"\0" + file_hash(file).encode())
@@ -45,24 +55,36 @@ def files_named(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
 
 
 def file_hash(file: Path) -> str:
-    """SHA-256 of a file and of the meshes that it names if it is a URDF; "missing" if it is none, or cannot be read."""
+    """SHA-256 of a file and of the meshes and buffers that it names; "missing" if one is none, or cannot be read."""
+    digest = hashlib.sha256()
     try:
-        status = file.stat()
-    except (OSError, ValueError):
+        meshes = _named_in(file, _version(file))
+        buffers = [buffer for mesh in meshes for buffer in _named_in(mesh, _version(mesh))]
+        for part in dict.fromkeys([file, *meshes, *buffers]):
+            digest.update(_digest_of(part, _version(part)))
+    except (OSError, ValueError, InputError):  # verifying the layout says what is wrong with it
         return "missing"
+    return digest.hexdigest()
+
+
+#: What tells one version of a file from another: times of change, size, place on the disk.
+Version = tuple[int, int, int, int]
+
+
+def _version(file: Path) -> Version:
+    status = file.stat()
     if not S_ISREG(status.st_mode):  # a pipe would be waited for
-        return "missing"
-    return _hash_of(file, status.st_mtime_ns, status.st_size)
+        raise FileNotFoundError(str(file))
+    return status.st_mtime_ns, status.st_ctime_ns, status.st_size, status.st_ino
 
 
 @lru_cache(maxsize=_KEPT)
-def _hash_of(file: Path, changed: int, size: int) -> str:
-    """``changed`` and ``size`` make a new version of the file another entry of the cache."""
-    try:
-        digest = hashlib.sha256()
-        for part in with_meshes(file):
-            with part.open("rb") as opened:
-                digest.update(hashlib.file_digest(opened, "sha256").digest())
-        return digest.hexdigest()
-    except (OSError, InputError):  # verifying the layout says what is wrong with it
-        return "missing"
+def _named_in(file: Path, version: Version) -> tuple[Path, ...]:
+    """``version`` makes a changed file another entry of the cache; each file has its own, a mesh changes alone."""
+    return files_named_in(file)
+
+
+@lru_cache(maxsize=_KEPT)
+def _digest_of(file: Path, version: Version) -> bytes:
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").digest()

@@ -6,10 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fixture_design.tolerances import DEFAULT
 from fixture_design.viewing.markup import Markup, tag
 
 #: Bars of a histogram, and its size [px].
 _BARS, _WIDTH, _HEIGHT = 40, 480, 120
+#: Margins that differ by less than this part of them are one bar: there are no numbers between for others [-].
+_ONE = 1e-9
 #: Room for the numbers below [px].
 _FOOT = 18
 
@@ -18,7 +21,7 @@ def histogram(margins: Sequence[float], title: str) -> Markup:
     """How often which margin occurs; bars of margins up to zero are in the colour of a no."""
     values = np.asarray(margins, dtype=np.float64)
     low, high = float(values.min()), float(values.max())
-    if low == high:
+    if high - low <= _ONE * max(abs(low), abs(high), DEFAULT.tie):
         low, high = low - 0.5 * abs(low or 1.0), high + 0.5 * abs(high or 1.0)
     counts, edges = np.histogram(values, _BARS, (low, high))
     step = _WIDTH / _BARS

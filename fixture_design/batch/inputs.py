@@ -29,7 +29,8 @@ def input_files(paths: Sequence[str | Path], besides: Path | None = None) -> lis
         besides: a file that is left out of folders and globs: the batch's own output.
 
     Raises:
-        FileFormatError: a path that is not there, a glob without matches, a folder without layouts, no paths.
+        FileFormatError: a path that is not there, a glob without matches, a folder without layouts that is named, a
+            folder that cannot be read, no paths.
     """
     files: dict[str, Path] = {}
     for path in map(Path, paths):
@@ -47,7 +48,7 @@ def is_lines(file: Path) -> bool:
 
 def _files_of(path: Path, besides: Path | None) -> list[Path]:
     if path.is_dir():
-        found = [file for file in sorted(_below(path)) if not _same(file, besides) and not _is_another_kind(file)]
+        found = _layouts_in(path, besides)
         if not found:
             endings = ", ".join((*LAYOUT_ENDINGS, *LINES_ENDINGS[:1]))
             raise FileFormatError("there are no layouts in this folder", source=path, expected=f"files in {endings}")
@@ -59,11 +60,39 @@ def _files_of(path: Path, besides: Path | None) -> list[Path]:
     matches = [Path(match) for match in sorted(glob(str(path), recursive=True))]
     if not matches:
         raise FileFormatError("no file matches this pattern", source=path)
-    return [file for match in matches if not _same(match, besides) for file in _files_of(match, besides)]
+    files = [file for match in matches if not _same(match, besides) for file in _matched(match, besides)]
+    if not files and any(match.is_dir() for match in matches):
+        raise FileFormatError("there are no layouts in what matches this pattern", source=path)
+    return files
+
+
+def _matched(match: Path, besides: Path | None) -> list[Path]:
+    """A folder that a pattern happens to match need have no layouts."""
+    return _layouts_in(match, besides) if match.is_dir() else [match]
+
+
+def _layouts_in(folder: Path, besides: Path | None) -> list[Path]:
+    return [file for file in sorted(_below(folder)) if not _same(file, besides) and not _is_another_kind(file)]
 
 
 def _below(folder: Path) -> Iterator[Path]:
-    for parent, folders, names in os.walk(folder):
+    """Also of folders that are links; each once, since links may lead in circles.
+
+    Raises:
+        FileFormatError: a folder that may not be read: its layouts would be missing, and nobody would know.
+    """
+
+    def unreadable(cause: OSError) -> None:
+        problem = f"the folder cannot be read: {cause.strerror or cause}"
+        raise FileFormatError(problem, source=cause.filename) from cause
+
+    met: set[tuple[int, int]] = set()
+    for parent, folders, names in os.walk(folder, onerror=unreadable, followlinks=True):
+        status = Path(parent).stat()
+        if (status.st_dev, status.st_ino) in met:
+            folders.clear()
+            continue
+        met.add((status.st_dev, status.st_ino))
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in names:
             if not name.startswith(".") and Path(name).suffix.lower() in (*LAYOUT_ENDINGS, *LINES_ENDINGS):

@@ -12,8 +12,8 @@ from fixture_design.batch.sweep import is_sampled, variant_count
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import read_bytes
 
-#: Texts without this word have no sweep, and need not be read to know it.
-_SWEEP = b"sweep"
+#: Texts without this word have no sweep, and need not be read to know it; unless it is written with escapes.
+_SWEEP, _ESCAPE = b"sweep", b"\\"
 
 
 def items_of(files: Sequence[Path]) -> Iterator[Item]:
@@ -46,15 +46,19 @@ def _lines(file: Path) -> Iterator[Item]:
     except OSError:
         yield Item(str(file), None)
         return
+    empty = True
     with opened:
         for number, line in enumerate(opened, start=1):
             text = line.strip()
             if text:
+                empty = False
                 yield Item(f"{file}:{number}", text, number, share=float(len(line)))
+    if empty:  # whoever reads it as a layout will say so
+        yield Item(str(file), b"")
 
 
 def _variants(item: Item) -> Iterator[Item]:
-    if item.text is None or _SWEEP not in item.text:
+    if item.text is None or not (_SWEEP in item.text or _ESCAPE in item.text):
         yield item
         return
     try:

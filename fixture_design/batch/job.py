@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
+from math import inf
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -19,6 +20,8 @@ from fixture_design.batch.summary import Summary
 from fixture_design.batch.worker import LookAt, verifying
 from fixture_design.errors import InputError
 
+#: Worker processes for each processor, at most: more only wait for each other, and each needs its memory.
+MOST_A_PROCESSOR = 8
 #: Told of items whose records are new or were there already.
 Watcher = Callable[[Sequence[tuple[Item, Entry]]], None]
 
@@ -42,8 +45,27 @@ def processors() -> int:
 
 
 def local_workers(detail: Detail = "full", jobs: int | None = None, limit: float | None = None) -> Workers:
-    """Worker processes of this machine, by default one a processor; ``limit``: seconds for one layout."""
-    return Crew(LookAt(verifying, detail), jobs or processors(), limit)
+    """Worker processes of this machine, by default one a processor, at most `MOST_A_PROCESSOR` times as many.
+
+    Args:
+        limit: seconds for one layout; None for any.
+
+    Raises:
+        InputError: numbers that cannot be.
+    """
+    check_numbers(jobs, limit)
+    most = MOST_A_PROCESSOR * processors()
+    return Crew(LookAt(verifying, detail), min(jobs or processors(), most), limit)
+
+
+def check_numbers(jobs: Any, limit: Any) -> None:
+    """Raises:
+    InputError: no number of processes, or no limit in seconds.
+    """
+    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+        raise InputError("the number of worker processes cannot be", found=repr(jobs), expected="1 or more, or None")
+    if limit is not None and not (isinstance(limit, int | float) and 0 < limit < inf):
+        raise InputError("the limit of time cannot be", found=repr(limit), expected="seconds, more than 0, or None")
 
 
 def detail_wanted(brief: bool, sets: bool) -> Detail:
@@ -79,6 +101,7 @@ def verify_batch(
 
     Raises:
         FileFormatError: a path that is not there, a glob without matches, a folder without layouts.
+        InputError: jobs or a limit that cannot be; brief and sets together.
     """
     files = input_files([paths] if isinstance(paths, str | Path) else list(paths))
     return _records(files, local_workers(detail_wanted(brief, sets), jobs, limit))

@@ -13,10 +13,10 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from fixture_design.batch.digest import input_hash
+from fixture_design.batch.digest import input_hash, text_hash
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.outcome import outcome_of, smallest_margin
-from fixture_design.batch.records import Detail, detail_of, record_of
+from fixture_design.batch.records import Detail, detail_of, record_of, was_given_up
 from fixture_design.errors import FileFormatError
 from fixture_design.io.verdict_record import VERDICT_SCHEMA
 from fixture_design.tolerances import DEFAULT
@@ -151,6 +151,9 @@ def _lock(file: BinaryIO, path: Path) -> None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as cause:
         raise FileFormatError("another batch is writing this output", source=path) from cause
+    except OSError as cause:  # as on some network drives
+        problem = f"the output cannot be locked against other batches: {cause.strerror or cause}"
+        raise FileFormatError(problem, source=path, expected="an output on another drive") from cause
 
 
 def _end_of_last_line(file: BinaryIO, step: int = 1 << 20) -> int:
@@ -181,7 +184,7 @@ def _difference(record: dict[str, Any], item: Item, detail: Detail, mended: bool
         return "it was computed with other tolerances"
     if not failed and detail_of(record) != detail:
         return f"records are {_WORDS[detail_of(record)]}, and those wanted are {_WORDS[detail]}"
-    if run.get("input") != input_hash(item):
+    if run.get("input") != (text_hash(item) if was_given_up(record) else input_hash(item)):
         changed = f"{item.source!r}, or a file it names, has changed since"
         return f"{changed} it was an error, and --retry looks at errors again" if failed else changed
     return None

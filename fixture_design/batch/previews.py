@@ -20,6 +20,8 @@ from fixture_design.verification.found import FoundContacts
 from fixture_design.viewing.card import card
 from fixture_design.viewing.markup import Markup, joined, tag
 
+#: Letters of a name that a page shows.
+MOST_LETTERS = 200
 #: Draws one layout with its contacts and verdict.
 Draw = Callable[[Layout, FoundContacts, Verdict], Markup]
 
@@ -52,8 +54,14 @@ def _drawn(item: Item, number: int, parts: PartCache, draw: Draw) -> Markup:
         name, content = layout.name, draw(layout, found, verify(layout, found=found, sets=False))
     except InputError as error:  # a file is another one since the batch looked at it
         name, content = item.named(item.default_name), tag("p", str(error))
-    heading = tag("h3", name, " ", tag("small", f"#{number + 1}, {item.source}"))
+    heading = tag("h3", short(name), " ", tag("small", f"#{number + 1}, {short(item.source)}"))
     return tag("article", heading, _off(item) or "", content)
+
+
+def short(text: str, times: int = 1) -> str:
+    """A text as people want to read it: nobody is kept from calling a layout by a whole file."""
+    most = times * MOST_LETTERS
+    return text if len(text) <= most else f"{text[: most // 2]} ... {text[-most // 2 :]}"
 
 
 def _off(item: Item) -> Markup | None:

@@ -29,7 +29,7 @@ class Progress:
         """
         self._total, self._stream = total_share, stream or sys.stderr
         self._terminal = self._stream.isatty()
-        self._count, self._share = 0, 0.0
+        self._count, self._share, self._told = 0, 0.0, 0
         self._before = self._said = self._marked = monotonic()
         self._at_mark = (0, 0.0)
 
@@ -47,10 +47,12 @@ class Progress:
         self._at_mark, self._marked = (self._count, self._share), monotonic()
 
     def close(self) -> None:
-        """Clears the line on a terminal."""
+        """Clears the line on a terminal; elsewhere the last count is the true one, where any was told."""
         if self._terminal:
             self._stream.write("\r\x1b[K")
             self._stream.flush()
+        elif self._told not in (0, self._count):
+            self._say(monotonic())
 
     def _say(self, now: float) -> None:
         count, share = self._at_mark
@@ -60,7 +62,8 @@ class Progress:
             weight = _MEMORY / 2 / passed  # keep the newer part of what the rate is taken from
             self._at_mark = (round(self._count - rate * passed * weight), self._share - pace * passed * weight)
             self._marked = now - passed * weight
-        text = f"{self._count} layouts, {rate:.3g}/s"
+        self._told = self._count
+        text = f"{self._count} layout{'' if self._count == 1 else 's'}, {rate:.3g}/s"
         if self._total > 0:
             text += f", {100 * min(self._share / self._total, 1.0):.0f} %"
             if pace > 0 and self._count - count >= _ENOUGH:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any, Literal, NamedTuple, TypeVar
 
-from fixture_design.batch.digest import input_hash
+from fixture_design.batch.digest import input_hash, text_hash
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.outcome import outcome_of, smallest_margin
 from fixture_design.batch.part_cache import PartCache
@@ -119,6 +119,17 @@ def failure(item: Item, error: Exception) -> Entry:
     known = name if isinstance(name, str) and name else item.default_name
     record = error_record(item.source, error, item.named(known))
     return entry_of_record(record | {"run": {"version": VERSION, "input": input_hash(item)}})
+
+
+def given_up(item: Item, error: Exception) -> Entry:
+    """Likewise of a layout that nobody may read again, since that takes too long or kills: its text is hashed alone."""
+    record = error_record(item.source, error, item.named(item.default_name))
+    return entry_of_record(record | {"run": {"version": VERSION, "input": text_hash(item)}})
+
+
+def was_given_up(record: Record) -> bool:
+    """Whether a record is one of `given_up`."""
+    return record.get("error", {}).get("kind") in {WorkerError.__name__, TimeLimitError.__name__}
 
 
 def entry_of_record(record: Record) -> Entry:

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from fixture_design.batch.against import Change, Comparison
+from fixture_design.batch.against import Change, Comparison, losses_in_words
 from fixture_design.batch.collected import MOST_ROWS, Row, collected
 from fixture_design.batch.histogram import histogram
 from fixture_design.batch.outcome import OUTCOMES
-from fixture_design.batch.previews import deviations_in_words, previews
+from fixture_design.batch.previews import deviations_in_words, previews, short
 from fixture_design.batch.results import records_in
 from fixture_design.batch.summary import Robustness, Summary
 from fixture_design.io.text_file import write_text
@@ -74,11 +74,14 @@ def write_batch_report(
         ("Against an earlier run", None if comparison is None else _comparison(comparison)),
         ("Margins", _margins(found.margins)),
         ("Errors", _errors(found.errors)),
-        ("The worst", previews(found.worst.numbers, files) if files else None),
+        (_nearest(summary), previews(found.worst.numbers, files) if files else None),
         ("Layouts", _layouts(found.rows, summary.count)),
     ]
     parts = [joined([tag("h2", heading), content]) for heading, content in sections if content is not None]
-    about = tag("p", f"{output.name}, {summary.count} layouts, {when}, fixture-design {VERSION}")
+    about = tag(
+        "p",
+        f"{output.name}, {summary.count} layout{'' if summary.count == 1 else 's'}, {when}, fixture-design {VERSION}",
+    )
     head = tag(
         "head",
         Markup('<meta charset="utf-8">'),
@@ -105,33 +108,44 @@ def _sweeps(summary: Summary) -> Markup | None:
     for sweep in summary.sweeps.values():
         low, high = sweep.interval
         sure = f"{100 * low:.3g} % to {100 * high:.3g} %" if sweep.sampled else "a grid"
-        worst, margin = ("", None) if sweep.worst is None else (sweep.worst_name, sweep.worst.margin)
+        worst, margin = ("", None) if sweep.worst is None else (sweep.worst.name, sweep.worst.margin)
         outcome = "" if sweep.worst is None else _outcome(sweep.worst.outcome)
         rows.append(
             [
-                sweep.source,
+                short(sweep.source),
                 _number(sweep.count),
-                _number(sweep.holds),
-                sure,
-                worst,
+                "nothing is required" if sweep.nothing_required else _number(sweep.holds),
+                _number(sweep.errors),
+                "" if sweep.nothing_required else sure,
+                short(worst),
                 outcome,
                 _margin(margin),
                 _off(sweep),
             ]
         )
-    headings = ["sweep", "variants", "hold", "95 % confidence", "worst variant", "outcome", "margin", "it is off by"]
+    headings = [
+        "sweep",
+        "variants",
+        "hold",
+        "errors",
+        "95 % confidence",
+        "worst variant",
+        "outcome",
+        "margin",
+        "it is off by",
+    ]
     return table(headings, rows, class_="sortable")
 
 
 def _off(sweep: Robustness) -> Markup:
-    off = sweep.worst_off
+    off = None if sweep.worst is None else sweep.worst.off
     return tag("small", "" if off is None else deviations_in_words(off))
 
 
 def _comparison(comparison: Comparison) -> Markup:
     said = (
-        f"{comparison.same} layouts are in both; {len(comparison.changed)} changed verdict, {len(comparison.lost)} "
-        f"margins were lost, {len(comparison.new)} layouts are new, {len(comparison.gone)} are gone."
+        f"{comparison.same} layouts are in both; {len(comparison.changed)} changed verdict, "
+        f"{losses_in_words(comparison)}, {len(comparison.new)} layouts are new, {len(comparison.gone)} are gone."
     )
     rows = [_change(change) for change in (*comparison.changed, *comparison.lost)[:MOST_ROWS]]
     changes = table(["layout", "source", "what", "before", "after"], rows, class_="sortable") if rows else ""
@@ -140,12 +154,12 @@ def _comparison(comparison: Comparison) -> Markup:
 
 def _change(change: Change) -> list[object]:
     values = [_outcome(v) if isinstance(v, str) else _margin(v) for v in (change.before, change.after)]
-    return [change.name, change.source, change.what, *values]
+    return [short(change.name), short(change.source), short(change.what), *values]
 
 
 def _margins(margins: Mapping[str, Sequence[float]]) -> Markup | None:
     """One histogram for everything that is required; brief records have no margins."""
-    return joined(histogram(known, what) for what, known in margins.items()) if margins else None
+    return joined(histogram(known, short(what)) for what, known in margins.items()) if margins else None
 
 
 def _errors(kinds: Counter[str]) -> Markup | None:
@@ -154,13 +168,20 @@ def _errors(kinds: Counter[str]) -> Markup | None:
 
 def _layouts(worst: Sequence[Row], count: int) -> Markup:
     rows = [
-        [_number(row.number + 1), row.name, row.source, _outcome(row.outcome), _margin(row.margin), row.why,
+        [_number(row.number + 1), short(row.name), short(row.source or ""), _outcome(row.outcome),
+         _margin(row.margin), short(row.why, 5),
          _margin(row.seconds)]
         for row in worst
     ]  # fmt: skip
     said = f"The {MOST_ROWS} worst of {count}." if count > MOST_ROWS else "The worst first."
     headings = ["#", "layout", "source", "outcome", "smallest margin", "why", "time [s]"]
     return joined([tag("p", said, " A click on a heading sorts."), table(headings, rows, class_="sortable")])
+
+
+def _nearest(summary: Summary) -> str:
+    """What the layouts that are drawn are."""
+    bad = any(summary.outcomes[outcome] for outcome in ("no", "undecided"))
+    return "The worst" if bad else "All hold; those of the smallest margins"
 
 
 def _outcome(word: str) -> Markup:

@@ -9,9 +9,28 @@ from typing import Any
 
 from fixture_design.batch.interval import wilson_interval
 from fixture_design.batch.item import Entry, Item
-from fixture_design.batch.outcome import OUTCOMES
+from fixture_design.batch.outcome import FAILURES, OUTCOMES
 from fixture_design.batch.reading import nominal_of
 from fixture_design.batch.sweep import Deviations, deviations_of
+
+
+@dataclass(frozen=True)
+class Worst:
+    """A variant, without its record and its layout: there may be many sweeps.
+
+    Attributes:
+        off: how far it is off what the layout says; None for what is no variant.
+    """
+
+    name: str
+    outcome: str
+    margin: float | None
+    off: Deviations | None
+
+    @classmethod
+    def of(cls, item: Item, entry: Entry) -> Worst:
+        off = None if item.variant is None else deviations_of(nominal_of(item), item.variant)
+        return cls(json.loads(entry.line)["name"], entry.outcome, entry.margin, off)
 
 
 @dataclass
@@ -21,57 +40,62 @@ class Robustness:
     Attributes:
         source: where the layout is.  sampled: whether variants were drawn at random.
         count: variants looked at.  holds: those that satisfy all requirements.
+        errors: those without a verdict.  judged: the others.  nothing_required: whether no requirement was asked.
         outcomes: how many came out how.
-        worst: the worst variant: of the worst outcome, the one of the smallest margin.  worst_item: its item.
+        worst: the worst variant that has a verdict: of the worst outcome, the one of the smallest margin.
     """
 
     source: str
     sampled: bool = False
     count: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
-    worst: Entry | None = None
-    worst_item: Item | None = None
+    worst: Worst | None = None
 
     @property
     def holds(self) -> int:
         return self.outcomes["yes"]
 
     @property
+    def errors(self) -> int:
+        return sum(self.outcomes[outcome] for outcome in FAILURES)
+
+    @property
+    def judged(self) -> int:
+        return self.count - self.errors
+
+    @property
+    def nothing_required(self) -> bool:
+        return 0 < self.judged == self.outcomes["nothing required"]
+
+    @property
     def interval(self) -> tuple[float, float]:
         """Of the probability that a variant holds, at 95 % confidence, for variants that were drawn at random."""
-        return wilson_interval(self.holds, self.count)
-
-    @property
-    def worst_name(self) -> str | None:
-        """The name of the worst variant."""
-        return None if self.worst is None else json.loads(self.worst.line)["name"]
-
-    @property
-    def worst_off(self) -> Deviations | None:
-        """How far the worst variant is off what the layout says."""
-        if self.worst_item is None or self.worst_item.variant is None:
-            return None
-        return deviations_of(nominal_of(self.worst_item), self.worst_item.variant)
+        return wilson_interval(self.holds, self.judged)
 
     def add(self, item: Item, entry: Entry) -> None:
         """Counts one more variant."""
         self.count += 1
         self.outcomes[entry.outcome] += 1
-        if self.worst is None or _badness(entry) < _badness(self.worst):
-            self.worst, self.worst_item = entry, item
+        if entry.outcome in FAILURES:
+            return
+        if self.worst is None or _badness(entry.outcome, entry.margin) < _badness(
+            self.worst.outcome, self.worst.margin
+        ):
+            self.worst = Worst.of(item, entry)
 
     def as_dict(self) -> dict[str, Any]:
         low, high = self.interval
         worst = None
         if self.worst is not None:
-            off = self.worst_off
+            off = self.worst.off
             worst = {
-                "name": self.worst_name, "outcome": self.worst.outcome, "margin": self.worst.margin,
+                "name": self.worst.name, "outcome": self.worst.outcome, "margin": self.worst.margin,
                 "off": None if off is None else off.as_dict(),
             }  # fmt: skip
         return {
             "source": self.source, "count": self.count, "holds": self.holds,
-            "fraction": self.holds / self.count, "interval": [low, high] if self.sampled else None, "worst": worst,
+            "errors": self.errors, "fraction": self.holds / self.judged if self.judged else None,
+            "interval": [low, high] if self.sampled else None, "worst": worst,
         }  # fmt: skip
 
 
@@ -111,6 +135,6 @@ class Summary:
         }
 
 
-def _badness(entry: Entry) -> tuple[int, float]:
+def _badness(outcome: str, margin: float | None) -> tuple[int, float]:
     """Smaller is worse."""
-    return OUTCOMES.index(entry.outcome), float("inf") if entry.margin is None else entry.margin
+    return OUTCOMES.index(outcome), float("inf") if margin is None else margin

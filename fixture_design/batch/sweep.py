@@ -189,6 +189,7 @@ def _with_friction(layout: Layout, friction: float) -> Layout:
     """All that takes the layout's coefficient takes this one; what has one of its own keeps it."""
 
     def rubbed(contact: Contact) -> Contact:
-        return replace(contact, friction=friction) if contact.friction == layout.friction else contact
+        own = contact.name in layout.own_friction or contact.friction != layout.friction
+        return contact if own else replace(contact, friction=friction)
 
     return replace(layout, friction=friction, contacts=tuple(map(rubbed, layout.contacts)))

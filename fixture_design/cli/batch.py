@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -67,8 +69,29 @@ def batch(
     """Verify thousands of layouts, in worker processes; a run that was stopped goes on where it was.
 
     Exit code, the first that is true of some layout: 4 internal error, 2 bad input, 1 a requirement fails, 3
-    undecided; else 0; 130 if it was interrupted.
+    undecided; else 0; 130 if it was interrupted, 143 if it was terminated.
     """
+    with _interrupts() as ended:
+        _run(
+            paths, output, brief, sets, jobs, limit, retry, cluster, report, table, against, as_json, ended
+        )  # fmt: skip
+
+
+def _run(
+    paths: list[Path],
+    output: Path,
+    brief: bool,
+    sets: bool,
+    jobs: int | None,
+    limit: float | None,
+    retry: bool,
+    cluster: str | None,
+    report: Path | None,
+    table: Path | None,
+    against: Path | None,
+    as_json: bool,
+    ended: Callable[[], int | None],
+) -> None:
     from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415
     from fixture_design.batch.against import compare  # noqa: PLC0415 - after the arguments are known good
     from fixture_design.batch.cluster import Cluster  # noqa: PLC0415
@@ -87,27 +110,29 @@ def batch(
     files = input_files([path.absolute() for path in paths] if cluster else paths, besides=output)
     _check_others(output, files, report, table, against)
     progress = Progress(total_share(files))
-    with _interrupts() as interrupted:
-        workers = local_workers(detail, jobs, limit) if cluster is None else Cluster(cluster, detail)
-        summary = run_batch(
-            files, output, workers,
-            detail=detail, watch=progress.add, ready=progress.resumed, retry=retry, stop=interrupted,
-        )  # fmt: skip
+    workers = local_workers(detail, jobs, limit) if cluster is None else Cluster(cluster, detail)
+    summary = run_batch(
+        files, output, workers,
+        detail=detail, watch=progress.add, ready=progress.resumed, retry=retry, stop=lambda: ended() is not None,
+    )  # fmt: skip
     progress.close()
     comparison = compare(output, against) if against is not None and not summary.interrupted else None
-    if report is not None:
-        # whoever interrupts it does not want to wait for drawings
-        write_batch_report(output, report, summary, comparison, files=[] if summary.interrupted else files)
-    if table is not None:
-        write_table(output, table)
-    if as_json:
-        said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
-        typer.echo(dumps(said))
-    else:
-        print_summary(summary, comparison)
+    try:  # what is known is said first; who does not listen has the files all the same
+        if as_json:
+            said = summary.as_dict() | ({} if comparison is None else {"against": comparison.as_dict()})
+            typer.echo(dumps(said))
+        else:
+            print_summary(summary, comparison)
+    finally:
+        if table is not None:
+            write_table(output, table)
+        if report is not None:
+            # whoever interrupts it does not want to wait for drawings
+            write_batch_report(output, report, summary, comparison, files=[] if summary.interrupted else files)
     if summary.interrupted:
-        say(f"{summary.count} records are in {output}; the same command goes on from there")
-        raise typer.Exit(ExitCode.INTERRUPTED)
+        records = "1 record is" if summary.count == 1 else f"{summary.count} records are"
+        say(f"{records} in {output}; the same command goes on from there")
+        raise typer.Exit(ExitCode.TERMINATED if ended() == signal.SIGTERM else ExitCode.INTERRUPTED)
     raise typer.Exit(worst(_CODES[outcome] for outcome in summary.outcomes))
 
 
@@ -123,6 +148,12 @@ def _check_others(
     from fixture_design.batch.table import check_table  # noqa: PLC0415
     from fixture_design.viewing import refuse_inputs  # noqa: PLC0415
 
+    named = [path for path in (output, report, table, against) if path is not None]
+    places = Counter(os.path.realpath(path) for path in named)
+    for path in named:
+        if places[os.path.realpath(path)] > 1:  # also where it is not there yet
+            raise FileFormatError("this file is named twice, and one would be lost", source=path,
+                                  expected="a name of its own for each of output, report, table, against")  # fmt: skip
     read = [*inputs, *([against] if against else [])]
     refuse_inputs(output, [against] if against else [])
     for written in filter(None, (report, table)):
@@ -136,8 +167,8 @@ def _check_others(
 
 
 @contextmanager
-def _interrupts() -> Iterator[Callable[[], bool]]:
-    """In here Ctrl-C (and SIGTERM) only set what the function asks for; a second one ends the process."""
+def _interrupts() -> Iterator[Callable[[], int | None]]:
+    """In here Ctrl-C and SIGTERM are only remembered: the function tells the first one; a second ends the process."""
     told: list[int] = []
 
     def hear(number: int, frame: object) -> None:
@@ -151,7 +182,7 @@ def _interrupts() -> Iterator[Callable[[], bool]]:
     except ValueError:  # not the main thread: signals are somebody else's
         before = {}
     try:
-        yield lambda: bool(told)
+        yield lambda: told[0] if told else None
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -12,9 +12,23 @@ from fixture_design.contacts.contact import (
     matching,
     unit_normal,
 )
-from fixture_design.contacts.friction import Side, first_tangents, friction_edges, tangents
+from fixture_design.contacts.friction import (
+    Side,
+    edges_around,
+    first_tangents,
+    friction_edges,
+    tangents,
+    tangents_towards,
+)
 from fixture_design.contacts.limit_surface import contact_edges, torsion_of_patch
-from fixture_design.contacts.wrench import cross, face_vectors, motion_about_origin, motion_scaled, velocity
+from fixture_design.contacts.wrench import (
+    cross,
+    face_vectors,
+    motion_about_origin,
+    motion_scaled,
+    scaled_rows,
+    velocity,
+)
 
 __all__ = [
     "OPENED",
@@ -30,6 +44,7 @@ __all__ = [
     "constraints_of",
     "contact_edges",
     "cross",
+    "edges_around",
     "face_vectors",
     "first_tangents",
     "friction_edges",
@@ -37,7 +52,9 @@ __all__ = [
     "motion_about_origin",
     "motion_scaled",
     "scale_of",
+    "scaled_rows",
     "tangents",
+    "tangents_towards",
     "torsion_of_patch",
     "unit_normal",
     "velocity",

@@ -17,7 +17,7 @@ from fixture_design.arrays import Indices, Point, Points, Rows, Weights
 from fixture_design.contacts.contact import Contact
 from fixture_design.contacts.friction import Side, first_tangents
 from fixture_design.contacts.limit_surface import contact_edges
-from fixture_design.contacts.wrench import face_vectors
+from fixture_design.contacts.wrench import scaled_rows
 from fixture_design.errors import ContactError, DimensionError
 from fixture_design.tolerances import COINCIDENT
 
@@ -150,11 +150,8 @@ def constraints_of(
                 alternative += [len(clause_of)] * len(rays)
                 clause_of.append(len(contact_of))
             contact_of.append(index)
-    rows = face_vectors(np.vstack(points), np.vstack(normals))
-    rows[:, len(scale.reference) :] += np.vstack(moments)
-    rows[:, len(scale.reference) :] /= scale.length
     return Constraints(
-        rows,
+        scaled_rows(np.vstack(points), np.vstack(normals), scale.length, np.vstack(moments)),
         np.array(errors),
         np.array(alternative, dtype=np.int64),
         np.array(clause_of, dtype=np.int64),

@@ -164,10 +164,10 @@ class Contact:
         return 3 if len(self.point) == 2 else 6
 
 
-def unit_normal(normal: Point) -> Point:
-    """The normal at length one; in two steps, since the square of 1e-200 is zero."""
-    scaled = normal / np.abs(normal).max()
-    return scaled / np.linalg.norm(scaled)
+def unit_normal(normal: np.ndarray) -> np.ndarray:
+    """Normals, shape (..., p), at length one; in two steps, since the square of 1e-200 is zero."""
+    scaled = normal / np.maximum.reduce(np.abs(normal), axis=-1, keepdims=True)
+    return scaled / np.sqrt(np.add.reduce(scaled * scaled, axis=-1, keepdims=True))
 
 
 def matching(first: Clause, second: Clause, within: float) -> bool:

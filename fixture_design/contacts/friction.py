@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points, cross_products
+from fixture_design.arrays import Indices, Point, Points, cross_products
 from fixture_design.contacts.contact import Contact, unit_normal
 
 #: An inner pyramid has its edges on the cone, an outer one its faces around it.
@@ -43,11 +43,19 @@ def friction_edges(
     if len(unit) == 2:
         tangent = np.array([-unit[1], unit[0]])
         return np.array([unit - friction * tangent, unit + friction * tangent])
-    second = tangents(unit)[1] if first is None else cross_products(unit, first)
-    first = tangents(unit)[0] if first is None else first
-    angles = 2 * np.pi * np.arange(edges) / edges
     reach = friction if side == "inner" else friction / np.cos(np.pi / edges)
-    return unit + reach * (np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second))
+    return edges_around(unit, tangents(unit)[0] if first is None else first, reach, edges)
+
+
+def edges_around(units: np.ndarray, firsts: np.ndarray, reach: float | np.ndarray, edges: int) -> np.ndarray:
+    """n + mu (cos a t + sin a (n X t)) at equal angles a, shape (..., edges, 3), for many cones of one size or more.
+
+    Args:
+        units: unit normals n, and unit tangents t across them, shape (..., 3).  reach: mu, shape (..., 1, 1) or one.
+    """
+    angles = (2 * np.pi * np.arange(edges) / edges)[:, None]
+    first, second = firsts[..., None, :], cross_products(units, firsts)[..., None, :]
+    return units[..., None, :] + reach * (np.cos(angles) * first + np.sin(angles) * second)
 
 
 def first_tangents(contacts: Sequence[Contact], centre: Point) -> list[Points]:
@@ -61,34 +69,57 @@ def first_tangents(contacts: Sequence[Contact], centre: Point) -> list[Points]:
         one array of shape (k, 3) a contact, for its k normals.
     """
     points = np.array([contact.point for contact in contacts])
-    directions = [unit_normal(normal) for contact in contacts for normal in contact.normals]
-    size = float(np.linalg.norm(points - centre, axis=1).max())
-    found = []
-    for contact in contacts:
-        levers = np.vstack([centre, points]) - contact.point
-        lengths = np.linalg.norm(levers, axis=1)
-        levers = levers[lengths > _ASIDE * size] / lengths[lengths > _ASIDE * size, None]
-        candidates = np.vstack([levers, directions])
-        found.append(np.array([_first_across(unit_normal(normal), candidates) for normal in contact.normals]))
-    return found
+    units = unit_normal(np.array([normal for contact in contacts for normal in contact.normals]))
+    owners = np.repeat(np.arange(len(contacts)), [len(contact.normals) for contact in contacts])
+    found = tangents_towards(points, centre, units, owners)
+    return [found[owners == index] for index in range(len(contacts))]
 
 
-def _first_across(unit: Point, candidates: Points) -> Point:
-    """The unit tangent along the first of some unit vectors that is clearly not along the normal."""
-    across = candidates - np.outer(candidates @ unit, unit)
-    lengths = np.linalg.norm(across, axis=1)
-    clear = np.flatnonzero(lengths > _ASIDE)
-    if not len(clear):
-        return tangents(unit)[0]
-    tangent = across[clear[0]] / lengths[clear[0]]
-    tangent = tangent - (tangent @ unit) * unit
-    return tangent / np.linalg.norm(tangent)
+def tangents_towards(points: np.ndarray, centre: np.ndarray, units: np.ndarray, owners: Indices) -> np.ndarray:
+    """`first_tangents` of one layout or many, of the same digits.
+
+    Args:
+        points: of the contacts, shape (..., c, 3), and ``centre``, shape (..., 3) [m].
+        units: unit normals, shape (..., k, 3), and the contact that each belongs to, shape (k,).
+
+    Returns:
+        one for each normal, shape (..., k, 3).
+    """
+    size = _lengths(points - centre[..., None, :]).max(axis=-2)[..., None]
+    ends = np.concatenate([centre[..., None, :], points], axis=-2)
+    levers = ends[..., None, :, :] - points[..., :, None, :]
+    lengths = _lengths(levers)
+    levers = levers / np.where(lengths > 0, lengths, 1.0)
+    known = lengths[..., 0] > _ASIDE * size
+    count = len(owners)
+    others = np.broadcast_to(units[..., None, :, :], (*units.shape[:-1], count, 3))
+    candidates = np.concatenate([levers[..., owners, :, :], others], axis=-2)
+    usable = np.concatenate([known[..., owners, :], np.ones((*units.shape[:-1], count), dtype=bool)], axis=-1)
+    across = _across(candidates, units[..., None, :])
+    lengths = _lengths(across)[..., 0]
+    clear = usable & (lengths > _ASIDE)
+    chosen = np.argmax(clear, axis=-1)[..., None]
+    taken = np.take_along_axis(across, chosen[..., None], axis=-2)[..., 0, :]
+    length = np.take_along_axis(lengths, chosen, axis=-1)
+    tangent = _across(taken / np.where(length > 0, length, 1.0), units)
+    alone = ~clear.any(axis=-1, keepdims=True)
+    tangent = np.where(alone, tangents(units)[0], tangent)
+    return tangent / _lengths(tangent)
 
 
-def tangents(unit: Point) -> tuple[Point, Point]:
-    """Two unit tangents, orthogonal to each other and to a unit normal in space; exact for normals along an axis."""
-    axis = np.zeros(3)
-    axis[int(np.argmin(np.abs(unit)))] = 1.0
+def _across(vectors: np.ndarray, units: np.ndarray) -> np.ndarray:
+    """What is left of vectors off unit normals."""
+    return vectors - np.add.reduce(vectors * units, axis=-1, keepdims=True) * units
+
+
+def _lengths(vectors: np.ndarray) -> np.ndarray:
+    """Shape (..., 1)."""
+    return np.sqrt(np.add.reduce(vectors * vectors, axis=-1, keepdims=True))
+
+
+def tangents(unit: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two unit tangents, orthogonal to each other and to unit normals (..., 3); exact for normals along an axis."""
+    axis = np.eye(3)[np.argmin(np.abs(unit), axis=-1)]
     first = cross_products(unit, axis)
-    first /= np.linalg.norm(first)
+    first /= _lengths(first)
     return first, cross_products(unit, first)

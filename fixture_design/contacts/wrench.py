@@ -11,26 +11,40 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.arrays import Point, Points, Rows, Vector, cross_products
+from fixture_design.arrays import Point, Vector, cross_products
 
 
-def face_vectors(points: Points, normals: Points) -> Rows:
+def face_vectors(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """d = [n; x X n] for every row (2-5).
 
     Args:
-        points: contact points x from the reference point, shape (m, p), p = 2 or 3 [m].
-        normals: outward normals of the part, shape (m, p), any length.
+        points: contact points x from the reference point, shape (..., p), p = 2 or 3 [m].
+        normals: outward normals of the part, shape (..., p), any length.
 
     Returns:
-        shape (m, 3) in the plane, (m, 6) in space.
+        shape (..., 3) in the plane, (..., 6) in space.
     """
-    return np.concatenate([normals, cross(points, normals)], axis=1)
+    return np.concatenate([normals, cross(points, normals)], axis=-1)
 
 
-def cross(points: Points, vectors: Points) -> Rows:
-    """x X v row by row: shape (m, 1) in the plane, (m, 3) in space."""
-    if points.shape[1] == 2:
-        return (points[:, :1] * vectors[:, 1:] - points[:, 1:] * vectors[:, :1]).reshape(-1, 1)
+def scaled_rows(
+    levers: np.ndarray, forces: np.ndarray, length: float | np.ndarray, moments: float | np.ndarray = 0.0
+) -> np.ndarray:
+    """Dimensionless rows [f; (x X f + m) / length], of one layout or many: the same numbers give the same digits.
+
+    Args:
+        levers: x from the reference point, and forces, shape (..., p).  moments: added to those of the levers.
+    """
+    rows = face_vectors(levers, forces)
+    rows[..., levers.shape[-1] :] += moments
+    rows[..., levers.shape[-1] :] /= length
+    return rows
+
+
+def cross(points: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """x X v row by row: shape (..., 1) in the plane, (..., 3) in space."""
+    if points.shape[-1] == 2:
+        return points[..., :1] * vectors[..., 1:] - points[..., 1:] * vectors[..., :1]
     return cross_products(points, vectors)
 
 

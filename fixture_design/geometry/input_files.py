@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import unquote
 from xml.etree import ElementTree
 
 from fixture_design.geometry.package import resolve
@@ -38,15 +40,39 @@ def input_files(layout: Layout) -> tuple[InputFile, ...]:
 
 
 def with_meshes(file: Path) -> list[Path]:
-    """A file and, where it is a URDF, the meshes that it names.
+    """A file with the files that it names: meshes of a URDF, buffers of a glTF.
 
     Raises:
         InputError: it cannot be read, or a mesh is not there.
     """
-    if file.suffix.lower() != ".urdf":
-        return [file]
+    meshes = files_named_in(file)
+    return list(dict.fromkeys([file, *meshes, *(buffer for mesh in meshes for buffer in files_named_in(mesh))]))
+
+
+def files_named_in(file: Path) -> tuple[Path, ...]:
+    """The meshes that a URDF names, the buffers that a glTF names; none of other files.
+
+    Raises:
+        InputError: a URDF that cannot be read, or a mesh that is not there.
+    """
+    ending = file.suffix.lower()
+    if ending == ".gltf":
+        return _buffers_of(file)
+    if ending != ".urdf":
+        return ()
     meshes = [mesh.get("filename", "") for mesh in robot_of(file).iter() if _is_mesh(mesh)]
-    return [file, *dict.fromkeys(resolve(name, file, f"mesh {name!r}") for name in meshes if name)]
+    return tuple(dict.fromkeys(resolve(name, file, f"mesh {name!r}") for name in meshes if name))
+
+
+def _buffers_of(file: Path) -> tuple[Path, ...]:
+    """The files with a glTF's numbers, but for those that are not there; none where it is no glTF that can be read."""
+    try:
+        buffers = json.loads(file.read_bytes()).get("buffers", [])
+        names = [buffer["uri"] for buffer in buffers if "uri" in buffer]
+    except (OSError, ValueError, AttributeError, TypeError):  # loading it says what is wrong
+        return ()
+    found = [file.parent / unquote(name) for name in names if isinstance(name, str) and not name.startswith("data:")]
+    return tuple(buffer for buffer in found if buffer.is_file())
 
 
 def _is_mesh(element: ElementTree.Element) -> bool:

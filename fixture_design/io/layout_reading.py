@@ -91,6 +91,7 @@ def layout_from_record(
         source=source,
         units=record.units,
         places=places,
+        own_friction=frozenset(c.name for c in record.contacts if c.friction is not None),
     )
 
 

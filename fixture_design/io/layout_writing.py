@@ -44,7 +44,7 @@ def layout_data(layout: Layout, folder: Path) -> Data:
         "surface_gap": float(layout.surface_gap) if layout.surface_gap != SURFACE_GAP else None,
         "elements": [_element(element) for element in layout.elements],
         "bodies": [_body(body, folder) for body in layout.bodies],
-        "contacts": [_contact(contact, layout.friction) for contact in layout.contacts],
+        "contacts": [_contact(contact, layout) for contact in layout.contacts],
         "key_features": [_key_feature(feature) for feature in layout.key_features],
         "loads": [_load(load, folder) for load in layout.loads],
         "stages": [_stage(stage) for stage in layout.stages],
@@ -122,13 +122,14 @@ def _body(body: Body, folder: Path) -> Data:
     return data | _given({"pose": _pose(body.pose), "friction": _number(body.friction)})
 
 
-def _contact(contact: Contact, default_friction: float) -> Data:
+def _contact(contact: Contact, layout: Layout) -> Data:
     if contact.provenance != Provenance():
         raise UnsupportedError(
             f"contact {contact.name!r} has {contact.provenance.kind} normals; a layout file holds exact ones only",
             expected="the element that touches there, in place of its contact",
         )
-    friction = float(contact.friction) if contact.friction != default_friction else None
+    own = contact.name in layout.own_friction or contact.friction != layout.friction
+    friction = float(contact.friction) if own else None
     data: Data = {"name": contact.name, "role": contact.role, "point": _numbers(contact.point)}
     return data | _normals(contact) | _given({"friction": friction})
 

@@ -92,7 +92,7 @@ def _start(path: Path, task: Layout, source: Path) -> Layout:
         raise FileFormatError(problem, source=source, found=str(path))
     return Layout(
         start.name, start.space, task.part, start.gravity, start.friction, start.surface_gap, start.elements,
-        start.bodies, start.contacts, source=start.source, places=start.places,
+        start.bodies, start.contacts, source=start.source, places=start.places, own_friction=start.own_friction,
     )  # fmt: skip
 
 

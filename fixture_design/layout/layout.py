@@ -186,7 +186,8 @@ class Layout:
         name: unique in a batch.  source: the file it came from.  space: planar or spatial.
         part: None for layouts of contacts alone.
         gravity: [m/s^2], None for none.  friction: default coefficient.  surface_gap: [m].
-        contacts: given outright.
+        contacts: given outright.  own_friction: names of those whose coefficient was given with them, so that it is not
+            the layout's, even where it is the same number.
         stages: groups with requirements; ``require`` holds those of the groups "locators" and "all".
         sweep: settings for a batch of variants, as read.
         units: of the file it came from, for display only.
@@ -211,6 +212,7 @@ class Layout:
     source: Path | None = None
     units: Literal["m", "mm", "in"] = "m"
     places: Mapping[tuple[str, ...], str] = field(default_factory=dict)
+    own_friction: frozenset[str] = frozenset()
 
 
 def named_files(layout: Layout) -> tuple[Path, ...]:

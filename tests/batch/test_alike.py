@@ -23,6 +23,7 @@ from fixture_design.layout import (
     Evidence,
     Finding,
     GroupVerdict,
+    Layout,
     Motion,
     RequirementVerdict,
     Singular,
@@ -345,3 +346,107 @@ def test_zero_normals_and_far_points_are_left_to_verify() -> None:
     together = dict(Alike("brief").entries(items))
     assert not {1, 2, 4, 5} & set(together)
     assert 6 in together
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+def test_bad_layouts_among_good_ones_cost_these_nothing(detail: Detail) -> None:
+    """A zero normal must not reach what computes evidence for all of a pile."""
+    items = items_of("smooth")
+    layouts = [json.loads(item.text or b"") for item in items]
+    layouts[1]["contacts"][0]["normal"] = [0, 0, 0]
+    layouts[2]["contacts"][0]["point"] = [1e300, 0, 0]
+    layouts[3]["contacts"][0]["normal"] = [1e-320, 0, 0]
+    items = [item._replace(text=json.dumps(layout).encode()) for item, layout in zip(items, layouts, strict=True)]
+    together = Alike(detail).entries(items)
+    assert {place for place, _ in together} >= {0, *range(4, COUNT)}
+    assert not {1, 2} & {place for place, _ in together}
+
+
+def near_ties(rng: np.random.Generator, plane: int, friction: float) -> list[bytes]:
+    """Layouts of one kind on the faces of a box, degenerate but for errors about as large as ties."""
+    count = int(rng.integers(7, 11) if plane == 3 else rng.integers(4, 7))
+    points, normals = rng.integers(-3, 4, size=(count, plane)).astype(float), np.zeros((count, plane))
+    for k in range(count):
+        axis, side = k % plane, (-1) ** (k // plane)
+        normals[k, axis], points[k, axis] = side, 4 * side
+    size = 10 ** rng.uniform(-11.3, -8)
+    texts = []
+    for number in range(12):
+        off = [size * rng.normal(size=points.shape) * (rng.random(points.shape) < 0.4) for _ in range(2)]
+        contacts = [
+            {"name": f"C{k}", "role": "locator", "point": p.tolist(), "normal": n.tolist()}
+            for k, (p, n) in enumerate(zip(points + off[0], normals + off[1], strict=True))
+        ]
+        head = {"schema": LAYOUT, "name": f"n{number}", "space": "planar" if plane == 2 else "spatial"}
+        texts.append(json.dumps({**head, "friction": friction, "contacts": contacts, "require": REQUIRE}).encode())
+    return texts
+
+
+@pytest.mark.parametrize("detail", ["brief", "full"])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("plane", [2, 3])
+def test_near_ties_have_the_answers_of_verify(plane: int, friction: float, detail: Detail) -> None:
+    """Whoever a layout is looked at with, its answers are the same ones."""
+    rng, told = np.random.default_rng([plane, int(10 * friction)]), 0
+    for _ in range(6):
+        items = [Item(f"l:{k}", text, k) for k, text in enumerate(near_ties(rng, plane, friction), start=1)]
+        for place, entry in Alike(detail).entries(items):
+            told += 1
+            found, expected = record(entry.line), record(entry_of(items[place], PartCache(), detail).line)
+            for name, group in expected["groups"].items():
+                answers = {q: found["groups"][name][q]["verdict"] for q in QUESTIONS}
+                assert answers == {q: group[q]["verdict"] for q in QUESTIONS}
+    assert told > 5 or (friction > 0 and detail == "full")
+
+
+def test_margins_do_not_depend_on_who_looks_at_a_layout() -> None:
+    """To the last digit: a layout may be looked at together with others, or be left over."""
+    for family in ("smooth", "few", "planar", "boxed"):
+        items = items_of(family, seed=11)
+        for place, entry in list(Alike("full").entries(items))[:8]:
+            found, expected = record(entry.line), record(entry_of(items[place], PartCache(), "full").line)
+            for name, group in expected["groups"].items():
+                for question in QUESTIONS:
+                    assert found["groups"][name][question]["margin"] == group[question]["margin"], (family, place)
+
+
+def test_names_that_look_like_marks() -> None:
+    """A contact may be called as the blanks of a record are."""
+    names = ["@source", "123.000007", "@m0", "@name", "@@input", "124.000017", "%s"]
+    items = items_of("smooth")
+    texts = [item.text or b"" for item in items]
+    for k, name in enumerate(names):
+        texts = [text.replace(b'"C%d"' % k, json.dumps(name).encode()) for text in texts]
+    items = [item._replace(text=text) for item, text in zip(items, texts, strict=True)]
+    for detail in ("brief", "full"):
+        together = Alike(detail).entries(items)  # type: ignore[arg-type]
+        assert len(together) > COUNT // 3
+        for place, entry in together[:5]:
+            found, expected = record(entry.line), record(entry_of(items[place], PartCache(), detail).line)  # type: ignore[arg-type]
+            assert {n: g["contacts"] for n, g in found["groups"].items()} == {
+                n: g["contacts"] for n, g in expected["groups"].items()
+            }
+            assert [c["name"] for c in found.get("contacts", ())] == [c["name"] for c in expected.get("contacts", ())]
+            assert found["source"] == items[place].source
+
+
+def test_interleaved_sets_of_names_are_all_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nine kinds of one shape, one after the other: each is read as a layout once."""
+    items = []
+    for number, item in enumerate(items_of("smooth") * 4):
+        text = (item.text or b"").replace(b'"C', b'"K%d ' % (number % 9))
+        items.append(item._replace(source=f"l:{number}", text=text))
+    read: list[str] = []
+
+    def counted(item: Item, **keys: bool) -> Layout:
+        read.append(item.source)
+        return layout_of(item, **keys)
+
+    monkeypatch.setattr("fixture_design.batch.alike.look.layout_of", counted)
+    assert len(Alike("brief").entries(items)) > 90
+    assert len(read) == 9
+
+
+def test_a_source_that_is_no_text() -> None:
+    items = [item._replace(source="l\udcff.jsonl:1") for item in items_of("smooth")[:4]]
+    assert all(b"l\\udcff.jsonl" in entry.line for _, entry in Alike("brief").entries(items))

@@ -2,19 +2,20 @@
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from fixture_design.batch import input_files, items_of, local_workers, run_batch
 from fixture_design.batch.cluster import Cluster
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.records import Detail, record_of
-from fixture_design.batch.worker import Look
+from fixture_design.batch.worker import Known, Look
 from fixture_design.errors import InputError
 from tests.batch.layouts import FAILS, HOLDS, deadly, lines, planar
 
@@ -77,6 +78,25 @@ def test_an_item_on_which_workers_die(tmp_path: Path, scheduler: Any) -> None:
     assert [found[n] for n in (0, 1, 3, 4, 5)] == [f"{n}.yaml {texts[n]}\n".encode() for n in (0, 1, 3, 4, 5)]
 
 
+def _faulty(detail: Detail) -> Look:
+    def look(items: Sequence[Item]) -> Iterator[Known]:
+        if any(item.text == b"fault" for item in items):
+            raise np.linalg.LinAlgError("SVD did not converge")
+        yield [(place, Entry(item.text or b"", "yes")) for place, item in enumerate(items)]
+
+    return look
+
+
+def test_a_fault_costs_one_item_its_verdict(scheduler: Any) -> None:
+    """Any error of a chunk, not only that its workers die."""
+    items = [Item(f"{n}.yaml", b"fault" if n == 3 else b"%d\n" % n) for n in range(12)]
+    with closing(Cluster(scheduler.scheduler_address, "full", _faulty)) as workers:
+        found = [entry.line for some in workers.entries(iter(items)) for _, entry in some]
+    assert len(found) == 12
+    assert [line for n, line in enumerate(found) if n != 3] == [b"%d\n" % n for n in range(12) if n != 3]
+    assert "LinAlgError: SVD did not converge" in record_of(found[3])["error"]["message"]
+
+
 def test_stopping_leaves_what_is_known(tmp_path: Path, scheduler: Any) -> None:
     files = library(tmp_path, 200)
     known: list[object] = []
@@ -86,7 +106,7 @@ def test_stopping_leaves_what_is_known(tmp_path: Path, scheduler: Any) -> None:
     assert 0 < len(known) < 202
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://x"])
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://x", "nonsense", ""])
 def test_nobody_answers(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fixture_design.batch.cluster._ANSWER", 1.0)
     with pytest.raises(InputError, match="no Dask scheduler answers"):

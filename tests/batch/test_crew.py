@@ -11,7 +11,9 @@ import pytest
 from fixture_design.batch import crew as crew_module
 from fixture_design.batch.crew import Crew
 from fixture_design.batch.item import Entry, Item
-from fixture_design.batch.records import Detail, WorkerError, record_of
+from fixture_design.batch.output import _difference
+from fixture_design.batch.records import Detail, TimeLimitError, WorkerError, given_up, record_of
+from fixture_design.batch.starting import started
 from fixture_design.batch.worker import Known, Look, LookAt
 from tests.batch.layouts import deadly
 
@@ -100,3 +102,46 @@ def test_nobody_is_blamed_for_the_others_time() -> None:
     with closing(Crew(LookAt(_told_together, "full"), 1, limit=1.0)) as crew:
         found = [entry.line for some in crew.entries(iter(items)) for _, entry in some]
     assert found == [b"%d\n" % n for n in range(4)]
+
+
+def test_no_more_processes_than_there_is_work_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[object] = []
+
+    def counted(look_at: LookAt) -> object:
+        begun.append(look_at)
+        return started(look_at)
+
+    monkeypatch.setattr(crew_module, "started", counted)
+    with closing(Crew(LookAt(partial(_deadly, str(tmp_path)), "full"), 10**21)) as crew:
+        found = [
+            entry.line for some in crew.entries(iter([Item(f"{n}", b"t") for n in range(12)])) for _, entry in some
+        ]
+    assert len(found) == 12
+    assert len(begun) <= 2
+
+
+def test_what_was_heard_before_the_end_is_kept(tmp_path: Path) -> None:
+    """A stop that is asked for while workers speak loses nothing that they said."""
+    asked: list[object] = []
+    with closing(Crew(LookAt(partial(_deadly, str(tmp_path)), "full"), 1)) as crew:
+        heard = crew._hear
+
+        def hear() -> None:
+            heard()
+            asked.extend(crew._known)
+
+        crew._hear = hear  # type: ignore[method-assign]
+        items = [Item(f"{n}", b"t") for n in range(3)]
+        found = [entry for some in crew.entries(iter(items), stop=lambda: bool(asked)) for _, entry in some]
+    assert len(found) == len(set(asked)) > 0
+
+
+def test_given_up_layouts_are_not_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their text may take for ever to read: name and hash do without, and so does going on."""
+    item = Item("x.yaml", b"name: y\npart: {mesh: z.stl}\n")
+    monkeypatch.setattr("fixture_design.batch.digest.values_of", lambda item: pytest.fail("it was read"))
+    monkeypatch.setattr("fixture_design.batch.records.values_of", lambda item: pytest.fail("it was read"))
+    found = record_of(given_up(item, TimeLimitError("it took long")).line)
+    assert (found["name"], found["error"]["kind"]) == ("x", "TimeLimitError")
+    assert _difference(found, item, "full", mended=False) is None
+    assert _difference(found, item._replace(text=b"path: other"), "full", mended=False) is not None

@@ -1,14 +1,20 @@
 """Which files a batch is about, and which layouts are in them."""
 
+import json
 import os
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from fixture_design.batch.digest import file_hash
 from fixture_design.batch.inputs import input_files
 from fixture_design.batch.items import items_of, total_share
+from fixture_design.batch.part_cache import PartCache
 from fixture_design.batch.reading import layout_of
+from fixture_design.batch.records import entry_of
 from fixture_design.errors import FileFormatError, InputError
 from tests.batch.layouts import lines, planar
 
@@ -102,3 +108,65 @@ def test_files_that_cannot_be_read_are_items(tmp_path: Path) -> None:
     for item in items_of([tmp_path / "pipe.jsonl", tmp_path / "pipe.yaml"]):
         with pytest.raises(FileFormatError, match="no regular file"):
             layout_of(item)
+
+
+def test_folders_that_are_links_are_looked_into_and_circles_end(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "elsewhere" / "deep").mkdir(parents=True)
+    (tmp_path / "elsewhere" / "deep" / "x.yaml").write_text("schema: fixture_design/layout/1\n")
+    (tmp_path / "lib" / "linked").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "elsewhere" / "deep" / "round").symlink_to(tmp_path / "elsewhere")
+    assert input_files([tmp_path / "lib"]) == [tmp_path / "lib" / "linked" / "deep" / "x.yaml"]
+
+
+def test_a_folder_that_cannot_be_read_is_not_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(folder: object, **keys: Any) -> Iterator[object]:
+        keys["onerror"](PermissionError(13, "Permission denied", str(tmp_path / "secret")))
+        return iter(())
+
+    monkeypatch.setattr(os, "walk", refuse)
+    with pytest.raises(FileFormatError, match="secret: the folder cannot be read: Permission denied"):
+        input_files([tmp_path])
+
+
+def test_a_folder_without_layouts_among_those_of_a_pattern(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "b" / "x.json").write_text("{}")
+    assert input_files([tmp_path / "*"]) == [tmp_path / "b" / "x.json"]
+    with pytest.raises(FileFormatError, match="no layouts in what matches"):
+        input_files([tmp_path / "a*"])
+
+
+def test_an_empty_file_of_lines_is_an_error_and_not_nothing(tmp_path: Path) -> None:
+    (tmp_path / "e.jsonl").write_text("\n\n")
+    (item,) = items_of([tmp_path / "e.jsonl"])
+    record = json.loads(entry_of(item, PartCache(), "brief").line)
+    assert record["error"]["kind"] in {"FileFormatError", "LayoutError"}
+
+
+def test_a_sweep_whose_key_is_escaped_is_one(tmp_path: Path) -> None:
+    text = json.dumps(planar("s", sweep={"at": 0.1, "samples": 3})).replace('"sweep"', '"\\u0073weep"')
+    assert "sweep" not in text
+    (tmp_path / "s.json").write_text(text)
+    assert [item.variant for item in items_of([tmp_path / "s.json"])] == [0, 1, 2]
+
+
+def test_a_changed_mesh_or_buffer_is_another_input(tmp_path: Path) -> None:
+    """Also where the file that names it has not changed."""
+    (tmp_path / "box.obj").write_text("v 0 0 0\n")
+    (tmp_path / "p.urdf").write_text(
+        '<robot name="p"><link name="l"><visual><geometry><mesh filename="box.obj"/></geometry></visual></link></robot>'
+    )
+    (tmp_path / "b.bin").write_bytes(b"12")
+    (tmp_path / "m.gltf").write_text(json.dumps({"buffers": [{"uri": "b.bin"}, {"uri": "data:,x"}, {"uri": "no.bin"}]}))
+    before = [file_hash(tmp_path / name) for name in ("p.urdf", "m.gltf")]
+    assert "missing" not in before
+    assert before == [file_hash(tmp_path / name) for name in ("p.urdf", "m.gltf")]
+    (tmp_path / "box.obj").write_text("v 1 0 0\n")
+    (tmp_path / "b.bin").write_bytes(b"34")
+    after = [file_hash(tmp_path / name) for name in ("p.urdf", "m.gltf")]
+    assert before[0] != after[0]
+    assert before[1] != after[1]
+    (tmp_path / "box.obj").unlink()
+    assert file_hash(tmp_path / "p.urdf") == "missing"

@@ -3,10 +3,12 @@
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import fixture_design as fd
+from fixture_design.batch.job import check_numbers
 from fixture_design.errors import FileFormatError, InputError
 from tests.batch.layouts import HOLDS, lines, planar
 
@@ -36,3 +38,23 @@ def test_leaving_early_ends_the_workers(tmp_path: Path) -> None:
     records = fd.verify_batch(lines(tmp_path / "lib.jsonl", [planar(str(n)) for n in range(100)]), jobs=1)
     assert next(records)["name"] == "0"
     records.close()
+
+
+@pytest.mark.parametrize("jobs", [0, -1, 1.5, True, "2"])
+def test_numbers_of_processes_that_cannot_be(jobs: Any) -> None:
+    with pytest.raises(InputError, match="worker processes cannot be"):
+        check_numbers(jobs, None)
+
+
+@pytest.mark.parametrize("limit", [0, -1, float("nan"), float("inf"), "1"])
+def test_limits_that_cannot_be(limit: Any) -> None:
+    with pytest.raises(InputError, match="limit of time cannot be"):
+        check_numbers(None, limit)
+
+
+def test_numbers_are_looked_at_before_anything_begins(tmp_path: Path) -> None:
+    library = lines(tmp_path / "lib.jsonl", [planar("a")])
+    with pytest.raises(InputError, match="worker processes cannot be"):
+        fd.verify_batch(library, jobs=-1)
+    with pytest.raises(InputError, match="limit of time cannot be"):
+        fd.verify_batch(library, limit=float("nan"))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from fixture_design.batch.against import Comparison, _Waiting, compare
+from fixture_design.batch.against import Comparison, _Waiting, compare, losses_in_words
 from fixture_design.batch.report import MOST_ROWS, write_batch_report
 from fixture_design.batch.summary import Summary
 from fixture_design.batch.table import check_table, write_table
@@ -217,3 +217,21 @@ def test_pages_of_brief_records_and_of_one_margin(tmp_path: Path) -> None:
     assert "<svg" not in page(tmp_path, [record("a", margin=None)])
     assert "<svg" in page(tmp_path, [record("a", margin=0.0)])
     assert "<h1>" in page(tmp_path, [])
+
+
+def test_margins_that_differ_by_rounding_are_one_bar(tmp_path: Path) -> None:
+    for margins in ([0.1, 0.1 + 2e-17, 0.1 + 3e-17], [0.3, 0.30000000000000004], [0.0, 5e-324], [-1e-3, -1e-3 - 1e-18]):
+        records = [record(f"n{k}", margin=margin) for k, margin in enumerate(margins)]
+        assert "<svg" in page(tmp_path, records)
+
+
+def test_a_name_as_long_as_a_file_is_cut(tmp_path: Path) -> None:
+    assert len(page(tmp_path, [record("n" * 1_000_000), failed("e" * 1_000_000)])) < 20_000
+
+
+def test_brief_and_full_records_cannot_be_compared(tmp_path: Path) -> None:
+    full = {**record("a"), "contacts": []}
+    found = compared(tmp_path, [full], [record("a", margin=None)])
+    assert found.unlike == 1
+    assert "not compared for all" in losses_in_words(found)
+    assert losses_in_words(compared(tmp_path, [full], [full])) == "0 margins were lost"

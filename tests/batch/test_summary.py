@@ -1,6 +1,7 @@
 """Counts, worst cases and confidence intervals."""
 
 import json
+import pickle
 
 import pytest
 from scipy import stats
@@ -10,6 +11,7 @@ from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.outcome import outcome_of, smallest_margin
 from fixture_design.batch.reading import layout_of
 from fixture_design.batch.summary import Summary
+from fixture_design.cli.batch_summary import sweep_in_words
 from tests.batch.layouts import planar
 
 
@@ -69,3 +71,33 @@ def test_the_worst_variant_has_the_worst_outcome_then_the_smallest_margin() -> N
     assert sweep["worst"] == worst
     assert sweep["interval"][0] < 0.6 < sweep["interval"][1]
     assert summary.as_dict()["outcomes"]["yes"] == 3
+
+
+def swept(outcomes: list[tuple[str, float | None]]) -> tuple[dict, str]:
+    """One sweep as plain values and in words."""
+    summary = Summary()
+    item = Item("x", json.dumps(planar(sweep={"at": 0.1, "samples": 5})).encode(), 1, sampled=True)
+    for number, (outcome, margin) in enumerate(outcomes):
+        summary.add(item._replace(variant=number), Entry(b'{"name": "x[%d]"}' % number, outcome, margin))
+    (sweep,) = summary.sweeps.values()
+    return sweep.as_dict(), sweep_in_words(sweep)
+
+
+def test_where_nothing_is_required_nothing_fails() -> None:
+    assert "nothing is required of its 2 variants" in swept([("nothing required", None)] * 2)[1]
+
+
+def test_errors_are_no_variants_that_fail() -> None:
+    found, said = swept([("yes", 0.1), ("internal error", None), ("yes", 0.2), ("bad input", None)])
+    assert (found["count"], found["errors"], found["fraction"]) == (4, 2, 1.0)
+    assert found["worst"]["name"] == "x[0]"
+    assert "2 of 2 variants hold" in said
+    assert "2 of 4 are errors" in said
+    assert swept([("bad input", None)])[0]["fraction"] is None
+
+
+def test_a_sweep_keeps_no_record_and_no_text() -> None:
+    summary = Summary()
+    item = Item("x", json.dumps(planar(sweep={"at": 0.1, "samples": 5})).encode() + b" " * 100_000, 1, 0)
+    summary.add(item, Entry(b'{"name": "x[0]", "long": "%s"}' % (b"y" * 100_000), "no", 0.1))
+    assert len(pickle.dumps(summary)) < 5_000

@@ -11,6 +11,7 @@ from fixture_design.batch.reading import layout_of
 from fixture_design.batch.sweep import deviations_of, variant_count, variant_of
 from fixture_design.errors import InputError
 from fixture_design.io import layout_from_data
+from fixture_design.io.layout_writing import layout_data
 from fixture_design.layout import Layout
 from fixture_design.tolerances import SURFACE_GAP
 from tests.batch.layouts import LAYOUT, planar
@@ -91,10 +92,15 @@ def test_deviations_are_what_a_variant_changes() -> None:
     ).as_dict() == {"part_pose": {"xy": [0, 0], "theta": -1}}
 
 
-def test_friction_of_its_own_stays() -> None:
-    contacts = [{"name": "Q", "role": "clamp", "point": [0, 0], "normal": [0, 1], "friction": 0.5}]
+@pytest.mark.parametrize("own", [0.5, 0.2])
+def test_friction_of_its_own_stays(own: float) -> None:
+    """Also where it is the layout's number."""
+    contacts = [{"name": "Q", "role": "clamp", "point": [0, 0], "normal": [0, 1], "friction": own}]
     given = layout({"friction": [0.1, 0.3], "samples": 1}, contacts=contacts, friction=0.2)
-    assert variant_of(given, 0).contacts[0].friction == 0.5
+    variant = variant_of(given, 0)
+    assert variant.friction != 0.2
+    assert variant.contacts[0].friction == own
+    assert layout_data(given, Path())["contacts"][0]["friction"] == own
 
 
 def test_an_empty_sweep_is_one_variant() -> None:

@@ -90,6 +90,9 @@ def test_json_is_the_summary(command: Callable, tmp_path: Path) -> None:
         (["lib.jsonl", "-o", "no/o.jsonl"], "the output cannot be written"),
         (["lib.jsonl", "-o", "notes.txt"], "the output exists and holds something else"),
         (["lib.jsonl", "-o", "o.jsonl", "--report", "lib.jsonl"], "this file is an input and would be lost"),
+        (["lib.jsonl", "-o", "o.jsonl", "--report", "./o.jsonl"], "o.jsonl: this file is named twice"),
+        (["lib.jsonl", "-o", "o.jsonl", "--report", "r", "--table", "r"], "r: this file is named twice"),
+        (["lib.jsonl", "-o", "o.jsonl", "--against", "o.jsonl"], "o.jsonl: this file is named twice"),
         (["lib.jsonl", "-o", "o.jsonl", "--table", "no/t.csv"], "no/t.csv: the file cannot be written"),
         (["lib.jsonl", "-o", "o.jsonl", "--table", "t.xlsx"], "ends in .csv or .parquet"),
         (["lib.jsonl", "-o", "o.jsonl", "--against", "old.jsonl"], "old.jsonl: the file cannot be read"),
@@ -162,20 +165,32 @@ MALFORMED = (
 )  # fmt: skip
 
 
-def test_ctrl_c_saves_and_the_same_command_goes_on(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_end_that_is_asked_for_saves_and_the_same_command_goes_on(tmp_path: Path, number: int, code: int) -> None:
     library = lines(tmp_path / "lib.jsonl", [planar(sweep={"at": 0.2, "samples": 20_000}, require=HOLDS)])
     output = tmp_path / "o.jsonl"
     process = start(library, "-o", output)
     wait_for(lambda: output.exists() and output.stat().st_size > 0, process)
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
+    os.killpg(process.pid, number)  # as a terminal does: to all processes
     _, said = process.communicate(timeout=30)
-    assert process.returncode == 130
+    assert process.returncode == code
     assert "the same command goes on from there" in said
     assert "Traceback" not in said
     saved = len(records(output))
     assert 0 < saved < 20_000
     assert start(library, "-o", output).wait() in {0, 1}
     assert [record["name"] for record in records(output)] == [f"lib:1[{number}]" for number in range(20_000)]
+
+
+def test_terminated_while_it_begins(tmp_path: Path) -> None:
+    """Processes that end before they begin to work are no fault then."""
+    library = lines(tmp_path / "lib.jsonl", [planar(sweep={"at": 0.2, "samples": 20_000}, require=HOLDS)])
+    process = start(library, "-o", tmp_path / "o.jsonl")
+    wait_for((tmp_path / "o.jsonl").exists, process)
+    os.killpg(process.pid, signal.SIGTERM)
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 143
+    assert "internal error" not in said
 
 
 def wait_for(condition: Callable[[], bool], process: subprocess.Popen[str]) -> None:

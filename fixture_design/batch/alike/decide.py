@@ -1,7 +1,8 @@
 """The questions about groups of contacts, for n layouts at a time, by the kernel's batches.
 
 The same rows and the same tolerances as in `analysis`, where each question has its reasons; the bounds come from
-`closure_tests`. What does not clear them is not decided here.
+`closure_tests`, which `analysis` asks first too. What does not clear them, or is near to where an answer changes, is
+not decided here.
 """
 
 from __future__ import annotations
@@ -11,18 +12,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fixture_design.analysis.force_closure import EDGES
 from fixture_design.arrays import Indices, Rows, Vector
 from fixture_design.batch.alike.plan import QUESTIONS, GroupPlan, Plan
 from fixture_design.cones.kernel import Closures, closure_tests
-from fixture_design.contacts import Scale
+from fixture_design.contacts import Scale, edges_around, scaled_rows, tangents_towards, unit_normal
 from fixture_design.tolerances import COINCIDENT, DEFAULT, FARTHEST, MOST_FRICTION, SUM_ROUNDING
 
 #: Answers as numbers.
 YES, NO, OPEN, NONE = 1, 0, -1, -2
 #: Points further from the origin than this, in their own spread, have fewer digits: not for here [-].
 _FAR = DEFAULT.tie / SUM_ROUNDING / 2
-#: Edges of the friction cones in space that are tried here.
-_EDGES = 8
+#: Edges of the friction cones in space that are tried here: those that `force_closure` begins with.
+_EDGES = EDGES[0]
+#: Numbers must clear the tolerances by this factor to be decided here: far more than the rounding by which sums of one
+#: layout and of many may differ, so that what is nearer is answered by `verify`, whoever it is looked at with [-].
+_CLEAR = 2.0
+#: Normals that close by this much do so with friction too, up to the largest coefficient: it makes rows longer by at
+#: most that, and s smaller by at most as much [-].
+_CLOSE_WITH_FRICTION = 10 * MOST_FRICTION * DEFAULT.near
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +84,7 @@ def numbers_of(plan: Plan, given: np.ndarray, reports: Sequence[Scale] = ()) -> 
     frictions = np.where(plan.frictions < 0, 0.0, given[:, plan.frictions])
     with np.errstate(all="ignore"):
         largest = np.abs(normals).max(axis=2, keepdims=True)
-        unit = normals / largest
-        unit /= np.linalg.norm(unit, axis=2, keepdims=True)
+        unit = unit_normal(normals)
         fit = np.isfinite(given).all(axis=1) & np.isfinite(unit).all(axis=(1, 2))
         fit &= (np.abs(points) <= FARTHEST).all(axis=(1, 2)) & (largest > 0).all(axis=(1, 2))
         coefficients = given[:, plan.coefficients]
@@ -97,9 +104,9 @@ def decide(plan: Plan, group: GroupPlan, numbers: Numbers, *, witnesses: bool = 
         none, answers = np.zeros((count, 0)), np.full((count, len(QUESTIONS)), NONE)
         return Decided(answers, none, none, none, np.zeros(count), None)
     with np.errstate(all="ignore"):
-        reference, length, sound = _scale(numbers.points[:, group.contacts])
-        levers = (numbers.points - reference[:, None]) / length[:, None, None]
-        rows = rows_of(levers[:, group.owners], numbers.normals[:, group.normals])
+        reference, length, sound = _scale(np.ascontiguousarray(numbers.points[:, group.contacts]))
+        levers = numbers.points - reference[:, None]
+        rows = scaled_rows(levers[:, group.owners], numbers.normals[:, group.normals], length[:, None, None, None])
         lengths = np.linalg.norm(rows, axis=3)
         rows /= lengths[..., None]
         sound &= np.isfinite(rows).all(axis=(1, 2, 3)) & numbers.fit
@@ -107,7 +114,7 @@ def decide(plan: Plan, group: GroupPlan, numbers: Numbers, *, witnesses: bool = 
     closures = _closures(rows, witnesses)
     closed, interior = _closed(closures, rows.shape[1]), _interior(closures, rows.shape[1])
     located = _located(rows)
-    held = _held(group, numbers, levers, closed, sound)
+    held = _held(group, numbers, levers, length, closed, closures, sound)
     answers = np.stack([located, _not(closed), np.where(closed == YES, NO, interior), closed, held], axis=1)
     answers[~sound] = OPEN
     return Decided(answers, rows, lengths, reference, length, closures)
@@ -130,15 +137,6 @@ def _coincide(points: np.ndarray, length: Vector) -> np.ndarray:
     return ~(apart > DEFAULT.tie * length)
 
 
-def rows_of(levers: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """[n; x X n] of levers and forces of shape (..., p)."""
-    if levers.shape[-1] == 2:
-        moments = levers[..., :1] * forces[..., 1:] - levers[..., 1:] * forces[..., :1]
-    else:
-        moments = np.cross(levers, forces)
-    return np.concatenate([forces, moments], axis=-1)
-
-
 def _closures(rows: np.ndarray, witnesses: bool = False) -> Closures:
     """Closure tests of rows of shape (n, b, r, d), branch after branch."""
     flat: Rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[-1]))
@@ -148,14 +146,16 @@ def _closures(rows: np.ndarray, witnesses: bool = False) -> Closures:
 
 def _closed(closures: Closures, branches: int) -> np.ndarray:
     """Every branch closes: yes; a motion of one: no."""
-    found = closures.closes.reshape(-1, branches)
-    return np.where((found == 1).all(axis=1), YES, np.where((found == 0).any(axis=1), NO, OPEN))
+    closes = (closures.lower > _CLEAR * DEFAULT.near).reshape(-1, branches)
+    moves = (closures.upper <= DEFAULT.zero / _CLEAR).reshape(-1, branches)
+    return np.where(closes.all(axis=1), YES, np.where(moves.any(axis=1), NO, OPEN))
 
 
 def _interior(closures: Closures, branches: int) -> np.ndarray:
     """Some branch can be left: yes; none can: no."""
-    found = closures.leaves.reshape(-1, branches)
-    return np.where((found == 1).any(axis=1), YES, np.where((found == 0).all(axis=1), NO, OPEN))
+    leaves = (closures.upper < -_CLEAR * DEFAULT.near).reshape(-1, branches)
+    stays = (closures.lower >= -DEFAULT.zero / _CLEAR).reshape(-1, branches)
+    return np.where(leaves.any(axis=1), YES, np.where(stays.all(axis=1), NO, OPEN))
 
 
 def _located(rows: np.ndarray) -> np.ndarray:
@@ -163,7 +163,7 @@ def _located(rows: np.ndarray) -> np.ndarray:
     if rows.shape[2] < rows.shape[3]:
         return np.full(len(rows), NO)
     smallest = np.linalg.svd(rows, compute_uv=False)[..., -1]
-    full, short = (smallest > DEFAULT.near).all(axis=1), (smallest <= DEFAULT.zero).any(axis=1)
+    full, short = (smallest > _CLEAR * DEFAULT.near).all(axis=1), (smallest <= DEFAULT.zero / _CLEAR).any(axis=1)
     return np.where(full, YES, np.where(short, NO, OPEN))
 
 
@@ -171,39 +171,78 @@ def _not(answers: np.ndarray) -> np.ndarray:
     return np.where(answers == YES, NO, np.where(answers == NO, YES, OPEN))
 
 
-def _held(group: GroupPlan, numbers: Numbers, levers: np.ndarray, closed: np.ndarray, sound: np.ndarray) -> np.ndarray:
+def _held(
+    group: GroupPlan,
+    numbers: Numbers,
+    levers: np.ndarray,
+    length: Vector,
+    closed: np.ndarray,
+    closures: Closures,
+    sound: np.ndarray,
+) -> np.ndarray:
     """Force closure: where there is friction, of the cones' edges; no only with a motion that the cone allows."""
-    held = closed.copy()
-    rubs = (numbers.frictions[:, group.contacts] > 0).any(axis=1) & sound & (closed != YES)
-    held[(closed == YES) & sound] = YES  # friction takes nothing away
-    if not rubs.any():
-        return held
-    x, n = levers[rubs][:, group.owners], numbers.normals[rubs][:, group.normals]
-    mu = numbers.frictions[rubs][:, group.owners][..., None]
-    edges = np.stack([n + mu * t for t in _tangents(n)], axis=-2)
-    rows = rows_of(np.broadcast_to(x[..., None, :], edges.shape), edges)
-    rows /= np.linalg.norm(rows, axis=-1, keepdims=True)
-    count, branches = rows.shape[:2]
-    found = _closures(rows.reshape(count, branches, -1, rows.shape[-1]), witnesses=True)
-    motions = found.motions.reshape(count, branches, -1)  # type: ignore[union-attr]
-    free = _opposition(x, n, mu[..., 0], motions) <= DEFAULT.zero
-    free &= (np.linalg.norm(motions, axis=2) > 0) & (found.upper.reshape(count, branches) <= DEFAULT.zero)
-    every = (found.closes.reshape(count, branches) == 1).all(axis=1)
-    held[rubs] = np.where(every, YES, np.where(free.any(axis=1), NO, OPEN))
+    rubs = (numbers.frictions[:, group.contacts] > 0) & sound[:, None]
+    surely = closures.lower.reshape(len(closed), -1).min(axis=1) > _CLOSE_WITH_FRICTION
+    asked = rubs.any(axis=1) & ~surely
+    held = np.where(surely & sound, YES, closed)
+    patterns, which = np.unique(rubs[asked], axis=0, return_inverse=True)
+    for number, pattern in enumerate(patterns):
+        some = np.flatnonzero(asked)[which.ravel() == number]
+        held[some] = _held_by_edges(group, numbers, levers, length, pattern, some)
     return held
 
 
-def _tangents(normals: np.ndarray) -> list[np.ndarray]:
-    """Unit vectors across unit normals of shape (..., p): both in the plane, evenly around in space."""
-    if normals.shape[-1] == 2:
-        across = np.stack([-normals[..., 1], normals[..., 0]], axis=-1)
-        return [across, -across]
-    axis = np.eye(3)[np.argmin(np.abs(normals), axis=-1)]
-    first = np.cross(normals, axis)
-    first /= np.linalg.norm(first, axis=-1, keepdims=True)
-    second = np.cross(normals, first)
-    angles = 2 * np.pi * np.arange(_EDGES) / _EDGES
-    return [np.cos(angle) * first + np.sin(angle) * second for angle in angles]
+def _held_by_edges(
+    group: GroupPlan, numbers: Numbers, levers: np.ndarray, length: Vector, rubs: np.ndarray, some: Indices
+) -> np.ndarray:
+    """Likewise of layouts in which the same contacts of a group rub; ``rubs``: shape (c,), of the group's contacts."""
+    x, n = levers[some][:, group.owners], numbers.normals[some][:, group.normals]
+    mu = numbers.frictions[some][:, group.owners]
+    firsts = _firsts(group, numbers, some)
+    rubbing = rubs[np.searchsorted(group.contacts, group.owners)]
+    rows = []
+    for branch in range(len(rubbing)):
+        forces, at = [], []
+        for row, edged in enumerate(rubbing[branch].tolist()):
+            normal, reach = n[:, branch, row], mu[:, branch, row, None, None]
+            first = None if firsts is None else firsts[:, group.normals[branch, row]]
+            forces.append(_edges(normal, first, reach) if edged else normal[:, None])
+            at.append(np.broadcast_to(x[:, branch, row, None], forces[-1].shape))
+        rows.append(scaled_rows(np.concatenate(at, axis=1), np.concatenate(forces, axis=1), length[some, None, None]))
+    edges = np.stack(rows, axis=1)
+    edges /= np.linalg.norm(edges, axis=-1, keepdims=True)
+    count, branches = edges.shape[:2]
+    found = _closures(edges, witnesses=True)
+    assert found.motions is not None
+    motions = found.motions.reshape(count, branches, -1)
+    every = (found.lower > _CLEAR * DEFAULT.near).reshape(count, branches).all(axis=1)
+    free = _opposition(x / length[some, None, None, None], n, mu, motions) <= DEFAULT.zero / _CLEAR
+    free &= (np.linalg.norm(motions, axis=2) > 0) & (found.upper.reshape(count, branches) <= DEFAULT.zero / _CLEAR)
+    # with alternatives it may be another motion that `verify` asks the cones about
+    return np.where(every, YES, np.where(free.all(axis=1) if branches == 1 else False, NO, OPEN))
+
+
+def _firsts(group: GroupPlan, numbers: Numbers, some: Indices) -> np.ndarray | None:
+    """Tangents of the first edges, as `first_tangents` has them, by the normals' places; None in the plane."""
+    if numbers.points.shape[2] == 2:
+        return None
+    owners = dict(zip(group.normals.ravel().tolist(), group.owners.ravel().tolist(), strict=True))
+    normals = np.array(sorted(owners), dtype=np.int64)
+    places = np.searchsorted(group.contacts, [owners[normal] for normal in normals.tolist()])
+    found = tangents_towards(
+        numbers.points[some][:, group.contacts], numbers.reference[some], numbers.normals[some][:, normals], places
+    )
+    firsts = np.zeros_like(numbers.normals[some])
+    firsts[:, normals] = found
+    return firsts
+
+
+def _edges(normal: np.ndarray, first: np.ndarray | None, reach: np.ndarray) -> np.ndarray:
+    """`friction_edges` of n cones, shape (n, k, p)."""
+    if first is not None:
+        return edges_around(normal, first, reach, _EDGES)
+    across = reach[:, 0] * np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
+    return np.stack([normal - across, normal + across], axis=1)
 
 
 def _opposition(x: np.ndarray, n: np.ndarray, mu: np.ndarray, motions: np.ndarray) -> np.ndarray:

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.analysis.hull import nearest_facet
-from fixture_design.batch.alike.decide import NO, YES, Decided, Numbers, rows_of
+from fixture_design.batch.alike.decide import NO, YES, Decided, Numbers
 from fixture_design.batch.alike.plan import GroupPlan
 from fixture_design.cones.kernel import minimum_norm_point
+from fixture_design.contacts import scaled_rows
 from fixture_design.tolerances import DEFAULT, SUM_ROUNDING
 
 
@@ -42,8 +43,11 @@ def evidence_of(group: GroupPlan, numbers: Numbers, decided: Decided) -> Evidenc
     assert decided.closures.motions is not None
     count, _, size, dimension = decided.rows.shape
     owners, which = group.owners[0], group.normals[0]
-    levers = (numbers.points - numbers.reference[:, None]) / numbers.length[:, None, None]
-    reported = rows_of(levers[:, owners], numbers.normals[:, which])
+    levers = numbers.points - numbers.reference[:, None]
+    reported = scaled_rows(levers[:, owners], numbers.normals[:, which], numbers.length[:, None, None])
+    sound = numbers.fit & np.isfinite(reported).all(axis=(1, 2))
+    # one bad layout would stop the others; and the order in memory decides about last digits
+    reported = np.ascontiguousarray(np.where(sound[:, None, None], reported, 0.0))
     motions, weights = decided.closures.motions, decided.closures.weights.reshape(count, size)
     weights = weights / np.where(decided.lengths[:, 0] > 0, decided.lengths[:, 0], 1.0)
     total = weights.sum(axis=1, keepdims=True)
@@ -51,7 +55,7 @@ def evidence_of(group: GroupPlan, numbers: Numbers, decided: Decided) -> Evidenc
     sizes, last = _unnoticed(decided.rows[:, 0])
     located, _, interior, closed, _ = decided.answers.T
     balances, moves = total[:, 0] > 0, np.linalg.norm(motions, axis=1) > 0
-    good = np.where(closed == YES, balances, moves & ((interior == YES) | balances))
+    good = sound & np.where(closed == YES, balances, moves & ((interior == YES) | balances))
     s = _margins(reported, closed, good)
     motion, along = _motion(motions, decided, numbers)
     still, still_along = _motion(last, decided, numbers)

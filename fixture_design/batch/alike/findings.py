@@ -45,7 +45,7 @@ def full_findings(plan: Plan, index: int, answers: list[int], rank: int, mark: M
 
     def balances(answer: int, margin: str, *, full_rank: bool) -> Finding:
         residual = one("weights residual")
-        basis = ((f"@{index} basis", 0),) if full_rank else ()
+        basis = ((mark.word(f"{index} basis"), 0),) if full_rank else ()
         weights = Weights(_weights(plan, group, f"{index} weights", mark), basis, (), residual)
         return Finding(answer_of(answer), one(margin), (weights,), residual)
 

@@ -13,7 +13,7 @@ from fixture_design.batch.alike.decide import OPEN, Numbers, decide, numbers_of
 from fixture_design.batch.alike.evidence import evidence_of
 from fixture_design.batch.alike.findings import MARGINS, basis_texts, brief_findings, full_findings
 from fixture_design.batch.alike.plan import QUESTIONS, Plan
-from fixture_design.batch.alike.text import Marks, RecordText, as_json, record_text
+from fixture_design.batch.alike.text import Marks, RecordText, as_json, record_text, texts_of
 from fixture_design.batch.digest import input_hash
 from fixture_design.batch.item import Entry, Item
 from fixture_design.batch.records import TIME_DIGITS, Detail
@@ -145,7 +145,7 @@ def _margins(plan: Plan, values: dict[str, np.ndarray], count: int) -> np.ndarra
 
 def _text(kind: Kind, key: list[int]) -> RecordText:
     """The text of all records with these answers and ranks."""
-    plan, mark, width = kind.plan, Marks(), len(QUESTIONS) + 1
+    plan, mark, width = kind.plan, Marks(texts_of(kind.plan)), len(QUESTIONS) + 1
     findings = {}
     for index, group in enumerate(plan.plans):
         *answers, rank = key[index * width : (index + 1) * width]
@@ -175,5 +175,10 @@ def _filled(
         given = map(repr, numbers)
         line = text.between % tuple([words[blank] if isinstance(blank, str) else next(given) for blank in text.blanks])
         margin = float(table.margins[row])
-        found.append((pile.places[row], Entry(line.encode(), text.outcome, None if isnan(margin) else margin)))
+        found.append(
+            (
+                pile.places[row],
+                Entry(line.encode("utf-8", errors="backslashreplace"), text.outcome, None if isnan(margin) else margin),
+            )
+        )
     return found

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -24,7 +23,7 @@ _ASIDE = re.compile(rb"[\1\2\3\\]")
 #: Stands for number k while a structure is made.
 _MARKED = 10_000_000
 _MARKED_NAME = "\ufffc"
-#: Structures kept for one number of quotes and numbers, and in all.
+#: Structures kept for the same texts in quotes, and in all.
 _MOST_ALIKE, _MOST = 4, 256
 
 #: A way to a value: ("contacts", 0, "point", 2).
@@ -76,20 +75,34 @@ class Structures:
     """The structures met so far, each with what was made of it."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[int, int], list[tuple[Structure, Any]]] = defaultdict(list)
+        self._known: dict[tuple[object, ...], list[tuple[Structure, Any]]] = {}
+        self._places: dict[tuple[int, int], dict[int | None, None]] = {}
+        self._last: tuple[Structure, Any] | None = None
         self._count = 0
 
     def find(self, cut: Cut) -> tuple[Structure, Any, str] | None:
         """The structure of a line, what was made of it, and the layout's name ("" if it has none)."""
-        for structure, made in self._known[cut.key]:
-            name = structure.name_in(cut.quoted)
-            if name is not None and structure.filled % cut.numbers == cut.outside:
-                return structure, made, name
+        if self._last is not None and (name := self._name_in(self._last[0], cut)) is not None:
+            return *self._last, name
+        for place in self._places.get(cut.key, ()):
+            for structure, made in self._known.get(_key(cut, place), ()):
+                name = self._name_in(structure, cut)
+                if name is not None:
+                    self._last = structure, made
+                    return structure, made, name
         return None
 
+    @staticmethod
+    def _name_in(structure: Structure, cut: Cut) -> str | None:
+        if len(cut.quoted) != len(structure.quoted) or len(cut.numbers) != len(structure.paths):
+            return None
+        name = structure.name_in(cut.quoted)
+        return name if name is not None and structure.filled % cut.numbers == cut.outside else None
+
     def add(self, structure: Structure, made: Any, cut: Cut) -> None:
-        """Remembers a structure; the oldest one of its kind is forgotten where there are many."""
-        alike = self._known[cut.key]
+        """Remembers a structure; the oldest one of the same texts in quotes is forgotten where there are many."""
+        self._places.setdefault(cut.key, {})[structure.named] = None
+        alike = self._known.setdefault(_key(cut, structure.named), [])
         if len(alike) == _MOST_ALIKE:
             alike.pop()
         elif self._count >= _MOST:
@@ -97,6 +110,12 @@ class Structures:
         else:
             self._count += 1
         alike.insert(0, (structure, made))
+
+
+def _key(cut: Cut, named: int | None) -> tuple[object, ...]:
+    """What lines of one structure share: how much there is of it, and the texts in quotes but for the name."""
+    texts = cut.quoted if named is None else [*cut.quoted[:named], *cut.quoted[named + 1 :]]
+    return cut.key, named, b'"'.join(texts)
 
 
 def cut(text: bytes) -> Cut | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,22 +22,37 @@ from fixture_design.tolerances import DEFAULT
 from fixture_design.verification.checker import sum_up
 from fixture_design.version import VERSION
 
-#: Marks as they stand in a text: a number small enough to be a coefficient of friction, or a word.
-_MARK = re.compile(r'123\.(\d{5})7|"@([a-z0-9 ]+)"|\[\["@([a-z0-9 ]+)", 0\]\]')
-#: Words for texts.
-NAME, SOURCE, INPUT = "@name", "@source", "@input"
+#: Whole parts of marks that are numbers: small enough to be a coefficient of friction.
+_WHOLE = range(123, 1000)
 
 
 class Marks:
-    """Numbers that stand for values until these are known: `mark("motion", 6)` are six of them."""
+    """Numbers that stand for values until these are known: `mark("motion", 6)` are six of them; and words for texts.
 
-    def __init__(self) -> None:
+    They are none that the layout's own texts have: a contact may be called "123.000007" or "@source".
+    """
+
+    def __init__(self, texts: Iterable[str] = ()) -> None:
+        """``texts``: all that the records repeat of the layout, such as names."""
+        said = "\n".join(texts)
+        self._whole = next(whole for whole in _WHOLE if f"{whole}." not in said)
+        self._sign = "@"
+        while self._sign in said:
+            self._sign += "@"
+        number = rf"{self._whole}\.(\d{{5}})7"
+        word = rf"{self._sign}([a-z0-9 ]+)"
+        #: Marks as they stand in a text.
+        self.pattern = re.compile(rf'{number}|"{word}"|\[\["{word}", 0\]\]')
         self._meaning: list[tuple[str, int]] = []
 
     def __call__(self, name: str, count: int) -> list[float]:
         first = len(self._meaning)
         self._meaning += [(name, column) for column in range(count)]
-        return [float(f"123.{number:05d}7") for number in range(first, first + count)]
+        return [float(f"{self._whole}.{number:05d}7") for number in range(first, first + count)]
+
+    def word(self, name: str) -> str:
+        """Stands for a text."""
+        return self._sign + name
 
     def meaning(self, number: int) -> tuple[str, int]:
         """The name and column that a mark stands for."""
@@ -79,8 +94,8 @@ def record_text(
     ]
     plane = plan.points.shape[1]
     verdict = Verdict(
-        name=NAME,
-        source=SOURCE,
+        name=mark.word("name"),
+        source=mark.word("source"),
         space=plan.layout.space,
         satisfied=sum_up([requirement.answer for requirement in requirements]),
         groups=groups,
@@ -89,15 +104,26 @@ def record_text(
         notes=(*plan.notes, *notes),
         reference=np.array(mark("reference", plane)),
         length=mark("length", 1)[0],
-        run={"version": VERSION, "kernel": KERNEL, "tolerances": DEFAULT.as_dict(), "input": INPUT},
+        run={"version": VERSION, "kernel": KERNEL, "tolerances": DEFAULT.as_dict(), "input": mark.word("input")},
     )
     record = verdict_record(verdict, detail)
     run = record["run"]
     # these come last, as `records` has them
-    last = ({"surface_gap": mark("surface gap", 1)[0]} if swept else {}) | {"input": INPUT, "time": mark("time", 1)[0]}
+    last = ({"surface_gap": mark("surface gap", 1)[0]} if swept else {}) | {
+        "input": mark.word("input"),
+        "time": mark("time", 1)[0],
+    }
     record["run"] = {key: value for key, value in run.items() if key != "input"} | last
     entry = entry_of_record(record)
     return _cut(dumps(record) + "\n", mark, entry.outcome)
+
+
+def texts_of(plan: Plan) -> Iterator[str]:
+    """Everything that records repeat of a layout's texts."""
+    yield from (contact.name for contact in plan.layout.contacts)
+    yield from (stage.name for stage in plan.layout.stages)
+    yield from (group.name for group in plan.groups)
+    yield from plan.notes
 
 
 def _marked(contacts: tuple[Contact, ...], mark: Marks) -> list[Contact]:
@@ -114,14 +140,14 @@ def _marked(contacts: tuple[Contact, ...], mark: Marks) -> list[Contact]:
         if contact.distance is not None:
             given = replace(given, distance=mark(f"distance {index}", 1)[0])
         if contact.feature is not None:
-            given = replace(given, feature=f"@feature {index}")
+            given = replace(given, feature=mark.word(f"feature {index}"))
         marked.append(given)
     return marked
 
 
 def _cut(text: str, mark: Marks, outcome: str) -> RecordText:
     between, blanks, end = [], [], 0
-    for found in _MARK.finditer(text):
+    for found in mark.pattern.finditer(text):
         between.append(text[end : found.start()].replace("%", "%%"))
         number, word, basis = found.groups()
         blanks.append(mark.meaning(int(number)) if number is not None else word or basis)
