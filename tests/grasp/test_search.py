@@ -52,7 +52,7 @@ def test_faces_of_a_wedge_see_each_other_within_their_friction_cones_only(tmp_pa
 
 
 def test_sets_that_close_are_confirmed_by_the_verdict():
-    part, geometry = primitive("sphere")
+    _, geometry = primitive("sphere")
     points, scale = spread(geometry, 0), Scale(geometry.box_center, geometry.half_diagonal)
     sets, margins = closing_sets(points, scale, 0.5, 3, (0.02, 0.2), np.random.default_rng(0))
     assert len(sets) > 10
@@ -183,7 +183,6 @@ def test_spots_are_reached_as_prescribed():
     from fixture_design.grasp.library import Library
     from fixture_design.grasp.reach import Reach
 
-    part, geometry = primitive("cube")
     model = model_of(THREE)
     spots = Spots(
         np.array([[0.03, 0, 0], [-0.03, 0.015, 0], [-0.03, -0.015, 0]]), np.array([[1.0, 0, 0], [-1, 0, 0], [-1, 0, 0]])
