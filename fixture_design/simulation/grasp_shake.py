@@ -110,6 +110,7 @@ class _World:
 
     plant: Any
     diagram: Any
+    hand: Any
     body: Any
     model: HandModel
     q: Weights
@@ -154,7 +155,7 @@ class _World:
             plant.Finalize()
             diagram = builder.Build()
             diagram.CreateDefaultContext()
-        return cls(plant, diagram, body, posture.model, posture.q, torques, part.pose)
+        return cls(plant, diagram, hand, body, posture.model, posture.q, torques, part.pose)
 
     def pulled(self, direction: np.ndarray, shake: Shake) -> tuple[float, float]:
         """How far the part moves and turns after it has settled, while gravity pulls along a direction."""
@@ -171,12 +172,8 @@ class _World:
         self.plant.SetPositions(mine, start)
         self.plant.SetFreeBodyPose(mine, self.body, make(turn(self.X_WP.rotation), self.X_WP.translation))
         wanted = self.q[self.model.free]
-        self.plant.get_desired_state_input_port(self.plant.GetModelInstanceByName(_name(self.plant))).FixValue(
-            mine, np.append(wanted, np.zeros(len(wanted)))
-        )
-        self.plant.get_actuation_input_port(self.plant.GetModelInstanceByName(_name(self.plant))).FixValue(
-            mine, self.torques
-        )
+        self.plant.get_desired_state_input_port(self.hand).FixValue(mine, np.append(wanted, np.zeros(len(wanted))))
+        self.plant.get_actuation_input_port(self.hand).FixValue(mine, self.torques)
         field = self.plant.mutable_gravity_field()
         field.set_gravity_vector(np.zeros(3))
         simulator: Any = Simulator(self.diagram, context)
@@ -188,14 +185,6 @@ class _World:
         center = before.translation()
         turned = before.rotation().inverse().multiply(after.rotation()).ToAngleAxis().angle()
         return float(np.linalg.norm(after.translation() - center)), float(abs(turned))
-
-
-def _name(plant: Any) -> str:
-    """The hand's model instance: the one that has drives."""
-    from pydrake.multibody.tree import JointActuatorIndex
-
-    instance = plant.get_joint_actuator(JointActuatorIndex(0)).model_instance()
-    return plant.GetModelInstanceName(instance)
 
 
 def _root(plant: Any, hand: Any) -> Any:
