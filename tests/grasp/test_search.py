@@ -78,9 +78,9 @@ def test_kabsch_finds_the_pose_that_was_used():
     ("hand", "name"),
     [
         (JAW, "cylinder"),
-        (JAW, "sphere"),
-        (THREE, "sphere"),
         (THREE, "cube"),
+        pytest.param(JAW, "sphere", marks=pytest.mark.slow),
+        pytest.param(THREE, "sphere", marks=pytest.mark.slow),
         pytest.param(JAW, "cube", marks=pytest.mark.slow),
         pytest.param(THREE, "cylinder", marks=pytest.mark.slow),
     ],
@@ -105,6 +105,7 @@ def _stands(found, part, geometry):
     assert posture.model.collides_with_itself(posture.q) is None
 
 
+@pytest.mark.slow
 def test_a_part_that_moves_takes_its_grasps_along():
     """All families are found again; their best may be another, as pyramids in friction cones do not turn along."""
     part, geometry = primitive("cube")
@@ -120,6 +121,7 @@ def test_a_part_that_moves_takes_its_grasps_along():
         _stands(there[features], replace(part, pose=X_WP), geometry)
 
 
+@pytest.mark.slow
 def test_the_seed_decides():
     part, geometry = primitive("cylinder")
     one, other = (grasp(model_of(THREE), part, replace(QUICK, seed=3), geometry).grasps[0] for _ in range(2))
@@ -156,6 +158,7 @@ def test_a_table_keeps_the_hand_above_it():
         assert lowest >= -0.0302
 
 
+@pytest.mark.slow
 def test_a_load_beyond_the_drives_is_not_held():
     part, geometry = primitive("cube")
     light = grasp(model_of(JAW), part, replace(QUICK, load=np.array([0, 0, -5.0, 0, 0, 0])), geometry)
