@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fixture_design.grasp.result import Grasp, GraspResult
     from fixture_design.grasp.robustness import PoseError
     from fixture_design.grasp.search import Search, grasp
-    from fixture_design.grasp.touching import Touching, touching
+    from fixture_design.grasp.touching import Touching
 
 _HOME = {
     "Fingertip": "hand",
@@ -38,7 +38,6 @@ _HOME = {
     "grasp_at": "judging",
     "hybrid_sets": "hybrid",
     "load_hand": "hand_model",
-    "touching": "touching",
 }
 
 __all__ = [
@@ -58,7 +57,6 @@ __all__ = [
     "grasp_at",
     "hybrid_sets",
     "load_hand",
-    "touching",
 ]
 
 

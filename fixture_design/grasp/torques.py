@@ -122,6 +122,32 @@ class Drives:
             return None
         return self._held(1.0, found.x[:-1])
 
+    def squeeze(self, total: float) -> Weights | None:
+        """Torques with which the fingers squeeze the part and balance, shape (f,); None where there are none.
+
+        Of all such forces the least push is largest, within the drives' limits and with ``total`` [N] in all at most.
+        """
+        from scipy.optimize import linprog
+
+        count, contacts = len(self.pushes.owners), max(self.pushes.contacts, default=-1) + 1
+        if not count:
+            return None
+        member = np.array(self.pushes.contacts)[None] == np.arange(contacts)[:, None]
+        member = member[member.any(axis=1)].astype(np.float64)
+        limited = np.isfinite(self.limits)
+        rows = self.torques[limited]
+        upper = np.vstack([np.hstack([-member, np.ones((len(member), 1))]), np.append(np.ones(count), 0.0)[None]])
+        sides = np.append(np.zeros(len(member)), total)
+        for sign in (1.0, -1.0):
+            upper = np.vstack([upper, np.hstack([sign * rows, np.zeros((len(rows), 1))])])
+            sides = np.append(sides, self.limits[limited])
+        equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
+        cost = np.append(np.zeros(count), -1.0)
+        found = linprog(cost, upper, sides, equalities, np.zeros(6), bounds=(0, None), method="highs")
+        if found.x is None or found.x[-1] <= 0:
+            return None
+        return self.torques @ found.x[:-1]
+
     def weakest(self) -> Weakest:
         """The direction of the 26 in which a force through the reference is held worst."""
         worst = Weakest(np.inf, np.array([0.0, 0.0, -1.0]))

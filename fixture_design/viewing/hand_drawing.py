@@ -29,7 +29,16 @@ def with_hand(scene: Scene, posture: Posture) -> Scene:
         layers=(*scene.layers, Layer("hand", f"hand: {posture.model.name}", SKY_BLUE)),
         camera=aimed(scene.camera, seen),
         stories=tuple(_seen_with(story, seen) for story in scene.stories),
+        first=_first(scene),
     )
+
+
+def _first(scene: Scene) -> int | None:
+    """Force closure, which is what grasps are for; where there is nothing to see of it, what was first."""
+    for number, story in enumerate(scene.stories):
+        if story.group == "all" and story.claim == "force_closure" and story.shown:
+            return number
+    return scene.first
 
 
 def hand_things(posture: Posture) -> Iterator[Thing]:
