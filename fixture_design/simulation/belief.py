@@ -87,7 +87,7 @@ class States:
     def rows(self, ids: tuple[str, ...]) -> np.ndarray:
         return np.flatnonzero(np.isin(np.array(self.ids), ids))
 
-    def gaps(self, q: Rows, rows: np.ndarray) -> Rows:
+    def gaps(self, q: Rows, rows: np.ndarray) -> np.ndarray:
         """How far each state is from having its pairs closed without an overlap, shape (n, states) [m]."""
         distances = self.geometry.equations(q, self.pairs[None]).distances
         widest = np.where(self.touching[rows][None], distances[:, None], 0.0).max(axis=2)

@@ -19,8 +19,19 @@ from scipy.spatial import cKDTree
 
 from fixture_design.assembly import ContactStateGraph
 from fixture_design.recognition import Classifier, recognize_log
-from fixture_design.simulation import ClosedLoop, Outcome, Sample, Setup, Trial, WristSensor
-from fixture_design.simulation import closed_loop, corner_first, insert, straight_down, without_looking
+from fixture_design.simulation import (
+    ClosedLoop,
+    Outcome,
+    Sample,
+    Setup,
+    Trial,
+    WristSensor,
+    closed_loop,
+    corner_first,
+    insert,
+    straight_down,
+    without_looking,
+)
 from fixture_design.simulation.belief import Belief
 from fixture_design.simulation.trials import Maker
 from tests.simulation.peg import classifier_of, peg_graph
@@ -151,7 +162,7 @@ def nearest(learned: np.ndarray, kinds: list[tuple[str, ...]], asked: np.ndarray
 
 
 def recognition(runs: int) -> None:
-    """Learned on a clearance of 0.5 mm with 2 % noise; asked there again, and on 0.2 mm at new places with 5 % noise."""
+    """Learned on a clearance of 0.5 mm with 2 % noise; asked there again, and on 0.2 mm at new places, noise 5 %."""
     learning = trial_of(0.0005, 0.02)
     cases = {
         "same clearance, noise 5 %": (0.0005, 0.05, 0.05),
