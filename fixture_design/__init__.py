@@ -11,8 +11,8 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > batch > viewing > io > design | recognition > assembly > verification > geometry | analysis > layout
-        > contacts > cones > arrays | errors | tolerances
+    cli > batch > viewing > io > simulation > design | recognition > assembly > verification
+        > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
   has the decisions everything waits for: double description (CONVERT), Tucker's partition (which rows balance), and the
@@ -35,6 +35,7 @@ The folders state the theory, and each imports only from those to its right::
   cuts for the fewest clamps and the proof, circuits that bind and motions that are free for the record.
 * `grasp`: hands in Drake, what they touch as layouts, the search for grasps that close and can be reached.
 * `recognition`: contact states from measured forces and displacements: measurement sets, discriminants, classifier.
+* `simulation`: assemblies in Drake with true contact states, recognition as a Drake system, and the loop closed by it.
 * `io`: files. `viewing`: evidence in words, the sheet to sign, the scene to look at (`viewing.scene`) as a page or a
   picture; `viewing.session` changes a layout in the browser. `batch`: thousands of layouts in worker processes.
   `cli`: the command line.

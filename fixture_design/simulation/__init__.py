@@ -3,7 +3,8 @@
 `planar_world` is the plant, `true_state` what touches in it, `systems` the sensor and recognition as Drake systems (the
 latter for any diagram), `simulation` a run. `insertion` closes the loop: `belief` of where the fixed parts are, from
 the states that recognition leaves, a `plan` through the graph, and the hybrid control sets of the state;
-`fixed_compliance` is what it is compared with, in `trials`. `grasp_shake` shakes a grasp in six directions. Drake is loaded when a simulation is made.
+`fixed_compliance` is what it is compared with, in `trials`. `grasp_shake` turns a grasp until gravity has pulled in six
+directions. Drake is loaded when a simulation is made.
 """
 
 from fixture_design.simulation.belief import Belief

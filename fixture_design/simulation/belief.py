@@ -37,6 +37,10 @@ _MOVED = np.array([1.5e-4, 1e-4, 4e-3])
 #: The same where all are wrong, relative to the displacements that were expected at the start [-].
 _LOST = 0.15
 
+#: The share of particles that is drawn as at the start, each time, and with them all that are farther than this many
+#: times what was expected [-].
+_FRESH, _FARTHEST = 0.05, 2.5
+
 #: Gaps of the best particle, relative to `CLOSED`, beyond which all of them are wrong [-].
 _WRONG = 4.0
 
@@ -87,7 +91,7 @@ class States:
     def rows(self, ids: tuple[str, ...]) -> np.ndarray:
         return np.flatnonzero(np.isin(np.array(self.ids), ids))
 
-    def gaps(self, q: Rows, rows: np.ndarray) -> Rows:
+    def gaps(self, q: Rows, rows: np.ndarray) -> np.ndarray:
         """How far each state is from having its pairs closed without an overlap, shape (n, states) [m]."""
         distances = self.geometry.equations(q, self.pairs[None]).distances
         widest = np.where(self.touching[rows][None], distances[:, None], 0.0).max(axis=2)
@@ -174,6 +178,9 @@ class Belief:
         chosen = np.searchsorted(np.cumsum(weights), (np.arange(count) + rng.uniform()) / count)
         widths = _LOST * self.spread if lost else _MOVED
         shifts = self.shifts[np.minimum(chosen, count - 1)] + widths * rng.normal(size=(count, 3))
+        fresh = np.array((np.abs(shifts) > _FARTHEST * self.spread).any(axis=1))
+        fresh[: int(_FRESH * count)] = True  # what was given up too early may come back
+        shifts[fresh] = self.spread * rng.normal(size=(int(fresh.sum()), 3))
         return replace(self, shifts=shifts, weights=np.full(count, 1 / count))
 
 

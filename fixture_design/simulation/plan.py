@@ -143,12 +143,13 @@ def corner_first(graph: ContactStateGraph, depth: float = 0.025, above: float = 
     edge = float(np.arccos(min(width / hole, 1.0)))
     tilt, half = edge + _BEYOND, width / 2
     left, under, right = "facet 2 - apex 1", "facet 3 - apex 2", "apex 4 - facet 7"
+    tops = ("apex 3 - facet 5", "apex 3 - facet 8")
     walls = ("apex 3 - facet 6", right, left, "facet 4 - apex 2")
     return plan_of(
         graph,
         [
             Wanted((half * float(np.cos(tilt)), above, tilt)),
-            Wanted((half / 4, -half / 2, tilt), (left, under), press=6.0),
+            Wanted((half / 4, -half / 2, tilt), (left, under), tops, press=6.0),
             Wanted((half / 8, -half / 3, edge + _SHORT), (left, under), press=6.0),
             Wanted((0.0, -hole / 2 * float(np.sin(edge)), edge / 2), (left,), (under, right), press=6.0),
             Wanted((0.0, -half / 2, 0.0), (), walls, press=2.0),

@@ -110,7 +110,7 @@ def _robot(plant: MultibodyPlant, robot: Robot) -> tuple[RigidBody, int]:
 
     def body(name: str, mass: float) -> RigidBody:
         sphere = UnitInertia(*[robot.inertia / robot.mass] * 3)
-        return plant.AddRigidBody(name, SpatialInertia(mass, _vector(0, 0, 0), sphere))
+        return plant.AddRigidBody(name, SpatialInertia(mass, _vector(0.0, 0.0, 0.0), sphere))
 
     light = _CARRIER * robot.mass
     x, y, flange, part = (
@@ -118,9 +118,9 @@ def _robot(plant: MultibodyPlant, robot: Robot) -> tuple[RigidBody, int]:
         for name, mass in (("x", light), ("y", light), ("flange", robot.mass - 3 * light), ("part", light))
     )
     joints = (
-        PrismaticJoint("x", plant.world_frame(), x.body_frame(), _vector(1, 0, 0)),
-        PrismaticJoint("y", x.body_frame(), y.body_frame(), _vector(0, 1, 0)),
-        RevoluteJoint("theta", y.body_frame(), flange.body_frame(), _vector(0, 0, 1)),
+        PrismaticJoint("x", plant.world_frame(), x.body_frame(), _vector(1.0, 0.0, 0.0)),
+        PrismaticJoint("y", x.body_frame(), y.body_frame(), _vector(0.0, 1.0, 0.0)),
+        RevoluteJoint("theta", y.body_frame(), flange.body_frame(), _vector(0.0, 0.0, 1.0)),
     )
     straight = PdControllerGains(p=robot.stiffness, d=robot.damping)
     turning = PdControllerGains(p=robot.turning_stiffness, d=robot.turning_damping)
@@ -161,7 +161,7 @@ class _Shapes:
     def _register(self, body: RigidBody, shape: Any, at: tuple[float, ...], feature: SimulatedFeature) -> Any:
         from pydrake.math import RigidTransform, RotationMatrix  # noqa: PLC0415 - as above
 
-        X_BG = RigidTransform(RotationMatrix.MakeZRotation(at[2]), _vector(at[0], at[1], 0))
+        X_BG = RigidTransform(RotationMatrix.MakeZRotation(at[2]), _vector(at[0], at[1], 0.0))
         name = f"{'moving' if feature.moving else 'fixed'} {feature.apex or feature.rows[0]}"
         found = self.plant.RegisterCollisionGeometry(body, X_BG, shape, name, self._properties())
         self.features[found] = feature

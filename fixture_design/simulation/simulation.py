@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -34,6 +34,7 @@ class Sample:
     possible: tuple[str, ...]
 
 
+@runtime_checkable
 class Controller(Protocol):
     """Moves the virtual target of the impedance."""
 

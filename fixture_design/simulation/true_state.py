@@ -11,8 +11,8 @@ from fixture_design.assembly.features import PlanarFeatures
 from fixture_design.simulation.belief import relative
 from fixture_design.simulation.planar_world import PlanarWorld, SimulatedFeature
 
-#: The point of a rectangle nearest to a ball that is beyond a corner is the corner: this near, relative to the radius of
-#: the ball [-]. The force is then between those of the sides.
+#: The point of a rectangle nearest to a ball that is beyond a corner is the corner: this near, relative to the ball's
+#: radius [-]. The force is then between those of the sides.
 _AT_CORNER = 1e-2
 
 #: Contacts with less force than this are none [N]: the solver leaves some where bodies are near each other.

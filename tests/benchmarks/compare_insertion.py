@@ -162,7 +162,7 @@ def nearest(learned: np.ndarray, kinds: list[tuple[str, ...]], asked: np.ndarray
 
 
 def recognition(runs: int) -> None:
-    """Learned on a clearance of 0.5 mm with 2 % noise; asked there again, and on 0.2 mm at new places with 5 % noise."""
+    """Learned on a clearance of 0.5 mm with 2 % noise; asked there again, and on 0.2 mm at new places, noise 5 %."""
     learning = trial_of(0.0005, 0.02)
     cases = {
         "same clearance, noise 5 %": (0.0005, 0.05, 0.05),

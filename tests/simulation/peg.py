@@ -10,7 +10,7 @@ from fixture_design.recognition import Classifier, Noise, build_classifier
 
 ROOT = Path(__file__).resolve().parents[2]
 PEG_AND_HOLE = ROOT / "urdf/peg_and_hole/peg_and_hole.assembly.yaml"
-LOGS = Path(__file__).parent / "logs"
+KEPT = Path(__file__).parent / "kept"
 
 
 def peg_graph(clearance: float = 0.0005, samples: int = 20) -> ContactStateGraph:
