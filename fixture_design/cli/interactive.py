@@ -30,7 +30,7 @@ def interactive(
 
     What is not saved in the end goes to a recovery file, which is told.
 
-    Exit code: 0 after `quit`, 130 after Ctrl-C, 143 when terminated, 2 bad input.
+    Exit code: 0 after `quit`, 130 after Ctrl-C, 143 when terminated, 129 when the terminal is closed, 2 bad input.
     """
     from fixture_design.viewing.session import Live, Steering, begun  # noqa: PLC0415 - after the arguments are known
 
@@ -47,19 +47,22 @@ def interactive(
             path = steering.leave()
             if path is not None:
                 say(f"unsaved changes are in {printable(str(path))}")
-    code = {signal.SIGINT: ExitCode.INTERRUPTED, signal.SIGTERM: ExitCode.TERMINATED}
     number = ended()
-    raise typer.Exit(ExitCode.HOLDS if number is None else code[signal.Signals(number)])
+    raise typer.Exit(ExitCode.HOLDS if number is None else _ENDING[signal.Signals(number).name])
+
+
+#: What asks for the end, as far as the system knows it: Ctrl-C, the system, a terminal that is closed.
+_ENDING = {"SIGINT": ExitCode.INTERRUPTED, "SIGTERM": ExitCode.TERMINATED, "SIGHUP": ExitCode.HUNG_UP}
 
 
 @contextmanager
 def _ended_by_signals() -> Iterator[Callable[[], int | None]]:
-    """Ctrl-C and SIGTERM ask for the end, so that nothing is lost; the number of the one that came."""
+    """Signals that ask for the end, so that nothing is lost; the number of the one that came first."""
     came: list[int] = []
     if threading.current_thread() is not threading.main_thread():
         yield lambda: None
         return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in signal.Signals if number.name in _ENDING}
     for number in before:
         signal.signal(number, lambda number, frame: came.append(number))
     try:

@@ -9,7 +9,7 @@ from fixture_design.io.design_record import design_to_dict
 from fixture_design.io.documents import Document, document_of, line_document, read_bytes, read_document
 from fixture_design.io.graph_file import graph_to_dict, read_graph, write_graph, write_graphml
 from fixture_design.io.json_writer import dumps
-from fixture_design.io.layout_file import layout_from_data, layout_text, read_layout, write_layout
+from fixture_design.io.layout_file import layout_from_data, layout_text, read_layout, write_layout, write_new_layout
 from fixture_design.io.places import Place
 from fixture_design.io.problems import ContentError
 from fixture_design.io.schemas import json_schema, schema_names
@@ -68,6 +68,7 @@ __all__ = [
     "write_graph",
     "write_graphml",
     "write_layout",
+    "write_new_layout",
     "write_log",
     "write_urdf",
 ]

@@ -16,7 +16,7 @@ from fixture_design.io.plain_words import validated
 from fixture_design.io.problems import content_error
 from fixture_design.io.records import LayoutRecord
 from fixture_design.io.schema_key import require_schema
-from fixture_design.io.text_file import write_text
+from fixture_design.io.text_file import write_new_text, write_text
 from fixture_design.io.yaml_writer import yaml_text
 from fixture_design.layout import Layout
 
@@ -50,9 +50,23 @@ def write_layout(layout: Layout, path: str | Path) -> None:
         UnsupportedError: it has contacts that were measured on a surface, which a file cannot state.
     """
     path = Path(path)
+    write_text(path, _text(layout, path))
+
+
+def write_new_layout(layout: Layout, path: Path) -> None:
+    """The same into a file that is made for it.
+
+    Raises:
+        FileExistsError: there is one by now, which stays as it is.
+        FileFormatError, UnsupportedError: as `write_layout`.
+    """
+    write_new_text(path, _text(layout, path))
+
+
+def _text(layout: Layout, path: Path) -> str:
     data = layout_data(layout, path.parent)
     layout_from_data(data, path)
-    write_text(path, json_text(data) if path.suffix.lower() == ".json" else yaml_text(data))
+    return json_text(data) if path.suffix.lower() == ".json" else yaml_text(data)
 
 
 def layout_text(layout: Layout, folder: Path) -> str:

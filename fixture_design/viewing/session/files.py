@@ -1,7 +1,10 @@
-"""Where a session saves, and where it leaves what nobody saved. No file that is there already is replaced unasked."""
+"""Where a session saves, and where it leaves what nobody saved. No file is replaced that the session does not know: new
+names are made anew, and what somebody else has written to its file since then stays.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -9,7 +12,7 @@ from itertools import count
 from pathlib import Path
 
 from fixture_design.errors import FileFormatError
-from fixture_design.io import layout_text, write_layout
+from fixture_design.io import layout_text, write_layout, write_new_layout
 from fixture_design.layout import Layout
 from fixture_design.viewing.report import refuse_inputs
 
@@ -25,10 +28,57 @@ def stem_of(path: Path) -> str:
     return name
 
 
-def free_name(folder: Path, stem: str, ending: str) -> Path:
-    """stem.ending, or stem.ending with the first number that no file has: "bracket.edited-2.yaml"."""
+def free_names(folder: Path, stem: str, ending: str) -> Iterator[Path]:
+    """stem.ending, stem.ending-2 and so on, those that no file has: "bracket.edited-2.yaml"."""
     names = (folder / f"{stem}.{ending}{'' if number == 1 else f'-{number}'}.yaml" for number in count(1))
-    return next(path for path in names if not path.exists())
+    return (path for path in names if not path.exists())
+
+
+def written_anew(layout: Layout, names: Iterator[Path]) -> Path:
+    """Writes a layout to the first of some names that is still free then: others may take names meanwhile.
+
+    Raises:
+        FileFormatError: it cannot be written there.
+    """
+    for path in names:
+        try:
+            write_new_layout(layout, path)
+        except FileExistsError:
+            continue
+        return path
+    raise AssertionError("names never end")
+
+
+def content_of(path: Path) -> str | None:
+    """What a file holds, as SHA-256; None where there is none."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except FileNotFoundError:
+        return None
+    except OSError as cause:
+        raise FileFormatError(f"the file cannot be read: {cause.strerror or cause}", source=path) from cause
+
+
+def write_known(layout: Layout, path: Path, known: str | None) -> str | None:
+    """Writes over a file as long as it holds what it held when it was seen last, or is still not there.
+
+    Args:
+        known: its content then.
+
+    Returns:
+        its content now.
+
+    Raises:
+        FileFormatError: somebody else has written it since then, or it cannot be written.
+    """
+    changed = FileFormatError("the file has changed on disk", source=path, expected="`save a copy`")
+    if content_of(path) != known:
+        raise changed
+    try:
+        write_new_layout(layout, path) if known is None else write_layout(layout, path)
+    except FileExistsError as cause:
+        raise changed from cause
+    return content_of(path)
 
 
 def target_of(source: Path | None, out: Path | None, inputs: tuple[Path, ...]) -> Path:
@@ -41,7 +91,8 @@ def target_of(source: Path | None, out: Path | None, inputs: tuple[Path, ...]) -
     if out is None:
         folder = Path.cwd() if source is None else source.absolute().parent
         is_layout = source is not None and source.suffix.lower() in (".yaml", ".yml", ".json")
-        return free_name(folder, "layout" if source is None else stem_of(source), "edited" if is_layout else "layout")
+        stem, ending = "layout" if source is None else stem_of(source), "edited" if is_layout else "layout"
+        return next(free_names(folder, stem, ending))
     refuse_inputs(out, inputs)
     if out.suffix.lower() not in (".yaml", ".yml", ".json"):
         raise FileFormatError("layouts are YAML or JSON", source=out, expected="a name with .yaml or .json")
@@ -50,9 +101,9 @@ def target_of(source: Path | None, out: Path | None, inputs: tuple[Path, ...]) -
     return out
 
 
-def another(target: Path) -> Path:
-    """A new file beside the one saved to, for a copy."""
-    return free_name(target.absolute().parent, stem_of(target), "edited")
+def copies(target: Path) -> Iterator[Path]:
+    """New files beside the one saved to, for a copy."""
+    return free_names(target.absolute().parent, stem_of(target), "edited")
 
 
 def recover(layout: Layout, target: Path) -> Path | None:
@@ -64,13 +115,10 @@ def recover(layout: Layout, target: Path) -> Path | None:
     """
     problems = []
     for folder in _folders(target):
-        path = free_name(folder, stem_of(target), "recovered")
         try:
-            write_layout(layout, path)
+            return written_anew(layout, free_names(folder, stem_of(target), "recovered"))
         except FileFormatError as refused:
             problems.append(str(refused))
-            continue
-        return path
     print(f"fixture-design: no place for unsaved changes ({'; '.join(problems)}); they are:", file=sys.stderr)
     print(layout_text(layout, Path.cwd()), file=sys.stderr)
     return None

@@ -18,7 +18,8 @@ from fixture_design.viewing.scene.space import lifted
 from fixture_design.viewing.session.lines import Line, element_line, verdict_lines, wrapped
 from fixture_design.viewing.session.panel import Panel, Reading
 from fixture_design.viewing.session.sliding import axes
-from fixture_design.viewing.session.steering import Steering, round_size
+from fixture_design.viewing.session.steering import Steering
+from fixture_design.viewing.session.tips import round_size
 
 if TYPE_CHECKING:
     from pydrake.geometry import Meshcat

@@ -40,6 +40,7 @@ class Panel:
         self._elements: int | None = None
         self._lines: dict[str, Line] = {}
         self._clicks: dict[str, int] = {}
+        self._answered: dict[str, int] = {}  # clicks on lines that stand since then
         for name in actions:
             self._board.AddButton(name)
 
@@ -61,8 +62,14 @@ class Panel:
         return found
 
     def asked(self) -> Line | None:
-        """The line that was clicked since it was written."""
-        return next((line for name, line in self._lines.items() if self._board.GetButtonClicks(name)), None)
+        """An answer whose line was clicked since this was asked last; lines that are about none are only read."""
+        found = None
+        for name, line in self._lines.items():
+            clicks = self._board.GetButtonClicks(name)
+            if clicks != self._answered.get(name, 0) and line.story is not None:
+                found = line
+            self._answered[name] = clicks
+        return found
 
     def show(self, number: int, elements: int, known: Reading | None = None) -> Reading | None:
         """The sliders for one of some elements, as it stands; what they are set to.
@@ -89,7 +96,7 @@ class Panel:
         old = list(self._lines.items())
         same = next((k for k, pair in enumerate(new.items()) if k >= len(old) or old[k] != pair), len(new))
         for name, _ in old[same:]:
-            self._board.DeleteButton(name)
+            self._remove(name)
         for name in list(new)[same:]:
             self._board.AddButton(name)
         self._lines = new
@@ -98,9 +105,14 @@ class Panel:
     def _ways(self) -> tuple[str, ...]:
         return (U,) if self._flat else (U, V)
 
+    def _remove(self, name: str) -> None:
+        """A line; one of this name that is added later has no clicks yet."""
+        self._board.DeleteButton(name)
+        self._answered.pop(name, None)
+
     def _build(self, number: int, elements: int) -> None:
         for name in self._lines:
-            self._board.DeleteButton(name)
+            self._remove(name)
         for name in (ELEMENT, *self._ways):
             self._board.DeleteSlider(name, strict=False)
         self._lines, self._elements = {}, elements

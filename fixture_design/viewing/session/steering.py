@@ -7,7 +7,7 @@ it as it is; `live` puts it into a browser.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,32 +15,18 @@ import numpy as np
 from fixture_design.arrays import Point
 from fixture_design.contacts import ROLES, unit_normal
 from fixture_design.design import DesignResult, repair
-from fixture_design.design.next_element import next_element
+from fixture_design.design.next_element import NextElement, next_element
 from fixture_design.errors import InputError
 from fixture_design.geometry import Polygon
-from fixture_design.io import write_layout
-from fixture_design.layout import (
-    Answer,
-    Layout,
-    LineTip,
-    PadTip,
-    PinTip,
-    PointTip,
-    SoftTip,
-    SphereTip,
-    Tip,
-    Verdict,
-    element_name,
-)
-from fixture_design.viewing.motion_words import motion_in_words
+from fixture_design.layout import Layout, PinTip, Verdict, element_name
 from fixture_design.viewing.session import session as steps
-from fixture_design.viewing.session.files import another, recover
+from fixture_design.viewing.session.errand import Errand, Work
+from fixture_design.viewing.session.files import content_of, copies, recover, write_known, written_anew
+from fixture_design.viewing.session.finding import addition_in_words, changes_in_words, no_changes_in_words
 from fixture_design.viewing.session.session import Session
 from fixture_design.viewing.session.sliding import axes
+from fixture_design.viewing.session.tips import tips_after
 from fixture_design.viewing.session.workpiece import Workpiece
-
-#: Size of a new tip in half diagonals of the part [-].
-_TIP = 0.04
 
 
 class Steering:
@@ -58,13 +44,12 @@ class Steering:
         assert layout.part is not None
         self.work = Workpiece(layout, layout.part)
         self.session, self.target = Session.of(layout), target
+        self._known = content_of(target)
         self.verdict: Verdict = self.work.verify(layout)
         self.message, self.version = "", 0
         self.told: tuple[str, str] | None = None
         self.lock = threading.RLock()
-        self._repair: threading.Thread | None = None
-        self._repaired: DesignResult | Exception | None = None
-        self._cancelled = threading.Event()
+        self._errand: Errand | None = None
 
     @property
     def layout(self) -> Layout:
@@ -72,14 +57,14 @@ class Steering:
 
     @property
     def busy(self) -> bool:
-        """Whether a repair is going on; nothing else is done meanwhile."""
-        return self._repair is not None
+        """Whether something is being looked for; nothing is changed meanwhile."""
+        return self._errand is not None
 
     @property
     def actions(self) -> dict[str, Callable[[], None]]:
-        """The operations without arguments, by the names of their buttons."""
+        """The operations without arguments, by the names of their buttons; none of them takes long."""
         return {
-            "add at the best place": self.add,
+            "add at the best place": self.look_for_place,
             "remove": self.remove,
             "role": self.next_role,
             "tip": self.next_tip,
@@ -106,22 +91,13 @@ class Steering:
 
     def add(self) -> None:
         """Adds the element that the layout needs next, at its best place."""
-        with self.lock:
-            if self._refuses():
-                return
-            try:
-                best = next_element(self.layout, self.work)
-            except InputError as error:
-                self._say(str(error))
-                return
-            if self._try(lambda session: steps.added(session, best.name, best.role, best.at)):
-                report = self.work.scale()
-                what = (
-                    "the margin is largest there"
-                    if best.motion is None
-                    else f"{best.why} before it: {motion_in_words(best.motion, report.reference, report.length)}"
-                )
-                self._say(f"{best.name} on {best.feature}: {what}")
+        self.look_for_place()
+        self.wait()
+
+    def look_for_place(self) -> None:
+        """Starts to look for the best place of the element that the layout needs next; `poll` puts it there."""
+        layout = self.layout
+        self._begin("looking for the best place", lambda progress, cancelled: next_element(layout, self.work))
 
     def remove(self) -> None:
         """Removes the chosen element."""
@@ -144,7 +120,7 @@ class Steering:
             if isinstance(element.tip, PinTip):
                 self._say(f"{element.name} is a pin in its hole: another tip would touch nothing there")
                 return
-            for tip in self._tips_after(element.tip, element.at):
+            for tip in tips_after(element.tip, self.work.scale().length, self._along(element.at)):
                 if self._try(lambda session, tip=tip: steps.with_tip(session, tip)):
                     return
 
@@ -157,58 +133,60 @@ class Steering:
         self._try(steps.redone)
 
     def save(self, path: str | Path | None = None) -> None:
-        """Writes the layout, to ``path`` from now on where it is given."""
+        """Writes the layout, to ``path`` from now on where it is given; not over what others wrote meanwhile."""
         with self.lock:
             target = self.target if path is None else Path(path)
             try:
-                write_layout(self.layout, target)
+                known = self._known if target == self.target else content_of(target)
+                self._saved(target, write_known(self.layout, target, known))
             except InputError as error:
                 self._say(f"not saved: {error}")
-                return
-            self.session, self.target = steps.as_saved(self.session), target
-            self._say(f"saved {target}")
 
     def save_copy(self) -> None:
         """Saves to a new file, and goes on with that."""
-        self.save(another(self.target))
+        with self.lock:
+            try:
+                target = written_anew(self.layout, copies(self.target))
+                self._saved(target, content_of(target))
+            except InputError as error:
+                self._say(f"not saved: {error}")
 
     def make_valid(self) -> None:
         """Starts to look for the fewest changes that make the requirements hold; `poll` puts them in."""
-        with self.lock:
-            if self._refuses():
-                return
-            self._cancelled.clear()
-            self._repaired = None
-            self._repair = threading.Thread(target=self._make_valid, args=(self.layout,), daemon=True)
-            self._say("looking for the fewest changes")
-            self._repair.start()
+        layout = self.layout
+        self._begin(
+            "looking for the fewest changes",
+            lambda progress, cancelled: repair(layout, self.work, progress=progress, cancelled=cancelled),
+        )
 
     def cancel(self) -> None:
-        """Gives up `make_valid`."""
+        """Gives up what is being looked for."""
         with self.lock:
-            if self.busy:
-                self._cancelled.set()
+            if self._errand is not None:
+                self._errand.cancel()
                 self._say("cancelling")
 
     def poll(self) -> None:
-        """Puts in what a repair has found, once it has."""
+        """Puts in what was looked for, once it is found."""
         with self.lock:
-            if self._repair is None or self._repair.is_alive():
+            errand = self._errand
+            if errand is None or not errand.done:
                 return
-            self._repair, found = None, self._repaired
-            if isinstance(found, InputError) or found is None:
+            self._errand, found = None, errand.found
+            if errand.cancelled:
+                self._say("cancelled; nothing has changed")
+            elif isinstance(found, InputError):
                 self._say(str(found))
             elif isinstance(found, Exception):
                 raise found
-            elif self._cancelled.is_set():
-                self._say("cancelled; nothing has changed")
             else:
                 self._put(found)
 
     def wait(self) -> None:
-        """Until no repair is going on."""
-        if self._repair is not None:
-            self._repair.join()
+        """Until nothing is being looked for any more."""
+        errand = self._errand
+        if errand is not None:
+            errand.wait()
         self.poll()
 
     def tell(self, story: tuple[str, str] | None) -> None:
@@ -220,7 +198,8 @@ class Steering:
     def leave(self) -> Path | None:
         """Ends: what is not saved goes to a recovery file, which is told."""
         with self.lock:
-            self._cancelled.set()
+            if self._errand is not None:
+                self._errand.cancel()
             if not self.session.unsaved:
                 return None
             path = recover(self.layout, self.target)
@@ -242,46 +221,47 @@ class Steering:
             self._say("")
             return True
 
+    def _begin(self, about: str, work: Work) -> None:
+        """Sends for something; who asks for the same again meanwhile changes nothing."""
+        with self.lock:
+            if self._errand is not None and self._errand.about == about:
+                return
+            if not self._refuses():
+                self._say(about)
+                self._errand = Errand(about, work, self._progress)
+
     def _refuses(self) -> bool:
-        if self.busy:
-            self._say("first `cancel`, or wait until the fewest changes are found")
+        if self._errand is not None:
+            self._say(f"{self._errand.about}: wait, or `cancel` first")
         return self.busy
 
     def _say(self, message: str) -> None:
-        self.message = message
-        self.version += 1
+        with self.lock:
+            self.message = message
+            self.version += 1
 
-    def _make_valid(self, layout: Layout) -> None:
-        """In a thread of its own."""
-        try:
-            self._repaired = repair(layout, self.work, progress=self._progress, cancelled=self._cancelled.is_set)
-        except Exception as error:  # noqa: BLE001 - raised again by `poll`, in the thread that waits for it
-            self._repaired = error
+    def _saved(self, target: Path, content: str | None) -> None:
+        self.session, self.target, self._known = steps.as_saved(self.session), target, content
+        self._say(f"saved {target}")
 
     def _progress(self, words: str, part: float) -> None:
-        if not self._cancelled.is_set():
-            self._say(f"{words} ({part:.0%})")
+        """From the errand's thread."""
+        with self.lock:
+            if self._errand is not None and not self._errand.cancelled:
+                self._say(f"{words} ({part:.0%})")
 
-    def _put(self, found: DesignResult) -> None:
-        if found.layout is None or not found.steps:
-            held = "all that is required holds already" if found.satisfied is Answer.YES else None
-            self._say(found.reason or held or "no changes were found")
+    def _put(self, found: object) -> None:
+        if isinstance(found, NextElement):
+            if self._try(lambda session: steps.added(session, found.name, found.role, found.at)):
+                self._say(addition_in_words(found, self.work.scale()))
             return
-        layout, count = found.layout, len(found.steps)
+        assert isinstance(found, DesignResult)
+        if found.layout is None or not found.steps:
+            self._say(no_changes_in_words(found))
+            return
+        layout = found.layout
         if self._try(lambda session: steps.put(session, layout)):
-            names = ", ".join(f"{step.element} {step.action}" for step in found.steps)
-            doubt = f"; {found.reason}" if found.reason else ""
-            self._say(f"{count} {'change' if count == 1 else 'changes'}: {names}{doubt}")
-
-    def _tips_after(self, tip: Tip, at: Point) -> Iterator[Tip]:
-        """The other kinds of tip, in a ring: point, ball, pad, line, soft."""
-        size = round_size(_TIP * self.work.scale().length)
-        along = self._along(at)
-        kinds: list[Tip] = [PointTip(), SphereTip(size), PadTip(size, size, along), LineTip(size, along), SoftTip(size)]
-        if isinstance(self.work.geometry, Polygon):
-            kinds = [kinds[0], kinds[1], kinds[3]]
-        here = next((number for number, kind in enumerate(kinds) if type(kind) is type(tip)), 0)
-        yield from (*kinds[here + 1 :], *kinds[:here])
+            self._say(changes_in_words(found))
 
     def _along(self, at: Point) -> Point:
         """A direction along the surface, in W."""
@@ -290,13 +270,3 @@ class Steering:
             normal = unit_normal(on.normals[0])
             return np.array([-normal[1], normal[0]])
         return axes(self.work.ground, at)[0]
-
-
-#: Leading digits of sizes that people choose.
-_DIGITS = (1, 2, 5)
-
-
-def round_size(length: float) -> float:
-    """1, 2 or 5 times a power of ten, the largest below a length [m]."""
-    power = 10.0 ** np.floor(np.log10(length))
-    return float(max(digit * power for digit in _DIGITS if digit == 1 or digit * power < length))

@@ -43,7 +43,7 @@ def unsaved(client: Client) -> bool:
     return client.buttons[-1].startswith("not saved yet: ")
 
 
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_signals_leave_a_recovery_file(tmp_path: Path, sent: signal.Signals, code: int) -> None:
     with running(POLYGON, "-o", tmp_path / "p.yaml") as (process, client):
         client.slide("u [mm]", 200.0)
@@ -71,6 +71,23 @@ def test_what_is_saved_needs_no_recovery(tmp_path: Path) -> None:
     assert "recovered" not in err
     assert len(fd.read_layout(tmp_path / "p.yaml").elements) == 4
     assert [each.name for each in tmp_path.iterdir()] == ["p.yaml"]
+
+
+def test_clicks_on_lines_settle(tmp_path: Path) -> None:
+    """On one that is about no answer, and on an answer: each is taken once, and then nothing more is sent."""
+    with running(POLYGON, "-o", tmp_path / "p.yaml") as (_, client):
+        line = next(name for name in client.buttons if "all: form_closure" in name)
+        plain = next(name for name in client.buttons if name.startswith("P1: locator"))
+        for name in (plain, line):
+            client.click(name)
+            while client.receive(0.5) is not None:
+                pass
+        client.click(line)
+        assert client.receive(10) is not None
+        count = 1
+        while client.receive(0.5) is not None:
+            count += 1
+        assert count < 60
 
 
 def test_it_listens_on_this_machine_only(tmp_path: Path) -> None:

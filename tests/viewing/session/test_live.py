@@ -76,6 +76,14 @@ class Session:
             assert time.monotonic() < end, f"it never came; the page says {self.texts()}; {self.live.message}"
             time.sleep(0.05)
 
+    def stays(self, told: tuple[str, str] | None) -> None:
+        """For a second what is told stays the same, and nothing is drawn again."""
+        time.sleep(0.3)
+        version, end = self.live.version, time.monotonic() + 1
+        while time.monotonic() < end:
+            assert (self.live.told, self.live.version) == (told, version)
+            time.sleep(0.005)
+
     def end(self) -> None:
         """The page first, or it would ask for more."""
         self.page.open("about:blank")
@@ -167,6 +175,12 @@ def test_a_click_on_an_answer_shows_what_it_rests_on(session: Session) -> None:
     session.click(line)
     session.until(lambda: session.live.told == ("locators", "form_closure"))
     session.until(lambda: any("can move" in text for text in session.texts()))
+    session.stays(("locators", "form_closure"))
+    session.click(element_line(session.live.layout.elements[0]).text)
+    session.stays(("locators", "form_closure"))
+    session.click(line)
+    session.until(lambda: session.live.told is None)
+    session.stays(None)
 
 
 def test_quit_in_the_page_leaves_a_recovery_file(chrome: Page, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -17,11 +18,11 @@ from fixture_design.errors import FileFormatError, InputError, UnknownNameError,
 from fixture_design.layout import Answer, Element, Layout, LineTip, PadTip, PinTip, PointTip, SphereTip, Stage, Verdict
 from fixture_design.viewing.session import Session, Steering, begun
 from fixture_design.viewing.session import session as steps
-from fixture_design.viewing.session.files import free_name, recover, stem_of, target_of
+from fixture_design.viewing.session.files import free_names, recover, stem_of, target_of, written_anew
 from fixture_design.viewing.session.lines import answer_lines, harmless
 from fixture_design.viewing.session.panel import ELEMENT, Panel, Reading, U
 from fixture_design.viewing.session.sliding import axes, slid
-from fixture_design.viewing.session.steering import round_size
+from fixture_design.viewing.session.tips import round_size
 
 URDF = Path(__file__).resolve().parents[3] / "urdf"
 BRACKET = URDF / "bracket" / "bracket.layout.yaml"
@@ -298,6 +299,93 @@ def test_save_and_copies(bracket: Steering, tmp_path: Path) -> None:
     assert len(fd.read_layout(bracket.target).elements) == len(bracket.layout.elements)
 
 
+def test_two_sessions_of_one_layout_do_not_overwrite_each_other(tmp_path: Path) -> None:
+    source = tmp_path / "p.layout.yaml"
+    fd.write_layout(fd.read_layout(POLYGON), source)
+    first, second = begun(Steering, source), begun(Steering, source)
+    assert first.target == second.target == tmp_path / "p.edited.yaml"
+    first.remove()
+    first.save()
+    written = first.target.read_bytes()
+    second.slide(0.1)
+    second.save()
+    assert "changed on disk" in second.message
+    assert "save a copy" in second.message
+    assert second.session.unsaved
+    assert first.target.read_bytes() == written
+    second.save_copy()
+    assert second.target == tmp_path / "p.edited-2.yaml"
+    assert not second.session.unsaved
+    first.undo()
+    first.save()
+    assert len(fd.read_layout(first.target).elements) == 5
+    assert len(fd.read_layout(second.target).elements) == 5
+
+
+def test_a_layout_edited_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
+    source = tmp_path / "p.layout.yaml"
+    fd.write_layout(fd.read_layout(POLYGON), source)
+    session = begun(Steering, source, out=source)
+    session.remove()
+    session.save()
+    assert not session.session.unsaved
+    source.write_text(source.read_text() + "# by hand\n")
+    session.undo()
+    session.save()
+    assert "changed on disk" in session.message
+    assert source.read_text().endswith("# by hand\n")
+    source.unlink()
+    session.save()
+    assert "changed on disk" in session.message
+    assert session.session.unsaved
+
+
+def test_a_name_that_somebody_takes_meanwhile_is_left_to_them(bracket: Steering, tmp_path: Path) -> None:
+    names = [tmp_path / "x.yaml", tmp_path / "y.yaml"]
+    names[0].write_text("theirs")
+    assert written_anew(bracket.layout, iter(names)) == names[1]
+    assert names[0].read_text() == "theirs"
+    names[0].unlink()
+    names[0].symlink_to(tmp_path / "z.yaml")
+    names[1].unlink()
+    assert written_anew(bracket.layout, iter(names)) == names[1]
+    assert not (tmp_path / "z.yaml").exists()
+
+
+def test_looking_for_a_place_is_said_and_impatient_clicks_are_one(
+    bracket: Steering, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go, real = threading.Event(), next_element
+
+    def slow(*given: object) -> object:
+        assert go.wait(30)
+        return real(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("fixture_design.viewing.session.steering.next_element", slow)
+    before = bracket.layout
+    add = bracket.actions["add at the best place"]
+    add()
+    assert bracket.message == "looking for the best place"
+    version = bracket.version
+    for _ in range(9):
+        add()
+        bracket.poll()
+    assert (bracket.message, bracket.version) == ("looking for the best place", version)
+    bracket.remove()
+    assert bracket.layout is before
+    assert "wait, or `cancel`" in bracket.message
+    go.set()
+    bracket.wait()
+    assert len(bracket.layout.elements) == len(before.elements) + 1
+    go.clear()
+    add()
+    bracket.cancel()
+    go.set()
+    bracket.wait()
+    assert len(bracket.layout.elements) == len(before.elements) + 1
+    assert "cancelled" in bracket.message
+
+
 def test_what_cannot_be_saved_is_said_and_not_lost(bracket: Steering, tmp_path: Path) -> None:
     bracket.remove()
     bracket.save(tmp_path / "none" / "x.yaml")
@@ -325,7 +413,7 @@ def test_names_of_files(tmp_path: Path) -> None:
     assert stem_of(Path("a/bracket.layout.yaml")) == "bracket"
     assert stem_of(Path("bracket.edited-2.yaml")) == "bracket.edited-2"
     (tmp_path / "b.edited.yaml").touch()
-    assert free_name(tmp_path, "b", "edited").name == "b.edited-2.yaml"
+    assert next(free_names(tmp_path, "b", "edited")).name == "b.edited-2.yaml"
     source = tmp_path / "b.layout.yaml"
     assert target_of(source, None, ()) == tmp_path / "b.edited-2.yaml"
     assert target_of(tmp_path / "part.stl", None, ()) == tmp_path / "part.layout.yaml"
@@ -410,7 +498,14 @@ def test_the_panel_keeps_its_order_and_counts_clicks() -> None:
     assert panel.clicked() == []
     assert panel.asked() is None
     board.buttons["x"] += 1
-    assert panel.asked() == Line("x")
+    assert panel.asked() is None  # it is about no answer
+    panel.write([Line("a"), Line("x"), Line("c", ("all", "form_closure"))])
+    board.buttons["c"] += 1
+    assert panel.asked() == Line("c", ("all", "form_closure"))
+    assert panel.asked() is None
+    panel.write([Line("a"), Line("c", ("all", "form_closure"))])
+    board.buttons["c"] += 1
+    assert panel.asked() == Line("c", ("all", "form_closure"))
     panel.show(2, 2)
     panel.write([Line("a")])
     assert list(board.buttons) == ["add", "quit", "a"]
