@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Weights
 from fixture_design.assembly.pair_equations import PairEquations
+from fixture_design.assembly.rims import Rims
 
 Space = Float[np.ndarray, "_ 3"]
 
@@ -22,25 +23,21 @@ class FacetPairs:
 
     Attributes:
         apices: shape (p, 3), in the apex's frame.  normals, offsets: of the facets, in their own.
-        rims: shape (p, k, 4): unit vectors in the facet's plane, out of it across each side, and offsets; the last
-            sides of facets with fewer are repeated.
+        rims: of the p pairs' facets.
     """
 
     apex_moves: bool
     apices: Space
     normals: Space
     offsets: Weights
-    rims: Float[np.ndarray, "_ _ 4"]
+    rims: Rims
 
     def equations(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values (n, m, 3), the last one zero, and gradients (n, m, 3, 6)."""
         points, arms, sign = self._seen(R, position, chosen)
-        normals, rims = self.normals[chosen], self.rims[chosen]
+        normals = np.broadcast_to(self.normals[chosen], points.shape)
         gap = np.einsum("nmi,nmi->nm", normals, points) - self.offsets[chosen]
-        beyond = np.einsum("nmki,nmi->nmk", rims[..., :3], points) - rims[..., 3]
-        worst = beyond.argmax(axis=-1)
-        over = np.maximum(np.take_along_axis(beyond, worst[..., None], axis=-1)[..., 0], 0.0)
-        across = np.take_along_axis(rims[..., :3], worst[..., None, None], axis=-2)[..., 0, :]
+        over, across = self.rims.over(points, chosen)
         gradients = [_gradient(self._in_world(R, direction), arms, sign) for direction in (normals, across)]
         gradients[1] = np.where((over > 0)[..., None], gradients[1], 0.0)
         values = np.stack([gap, over, np.zeros_like(gap)], axis=-1)
@@ -48,8 +45,7 @@ class FacetPairs:
 
     def beyond(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
         """How far each apex is beyond the rim, negative within it, shape (n, p) [m]."""
-        points, _, _ = self._seen(R, position, np.arange(len(self.apices))[None].repeat(len(R), axis=0))
-        return (np.einsum("pki,npi->npk", self.rims[..., :3], points) - self.rims[..., 3]).max(axis=-1)
+        return self.rims.beyond(self._seen(R, position, np.arange(len(self.apices))[None])[0])
 
     def levers(self, position: np.ndarray) -> np.ndarray:
         """Distances of the apices from the moving body's origin, shape (n, p) [m]."""
@@ -64,7 +60,7 @@ class FacetPairs:
     def _seen(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """The apices in the facets' frame, from the moving body's origin in fixed axes, and how a motion counts."""
         if self.apex_moves:
-            arms = np.einsum("nij,nmj->nmi", R, self.apices[chosen])
+            arms = self.apices[chosen] @ np.swapaxes(R, -1, -2)
             return arms + position[:, None], arms, 1.0
         arms = self.apices[chosen] - position[:, None]
         return np.einsum("nji,nmj->nmi", R, arms), arms, -1.0

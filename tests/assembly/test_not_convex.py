@@ -1,0 +1,157 @@
+"""Bodies in space that are not convex, each given whole as one mesh."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from shapely.geometry import Point, Polygon
+
+from fixture_design.assembly import Assembly, rotations, state_at, state_graph
+from fixture_design.assembly.geometry_of import geometry_of
+from fixture_design.assembly.polyhedron import Polyhedron, polyhedron_of
+from fixture_design.assembly.rims import ConvexRims, PolygonRims
+from fixture_design.errors import UnsupportedError
+from fixture_design.io import assembly_from_data
+from tests.assembly.solids import prism
+from tests.geometry.parts import SHARED
+
+FLOOR = {"box": [20, 20, 2], "pose": {"xyz": [0, 0, -1]}}
+L_SHAPE = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
+PLATE, HOLE = [[-4, -4], [4, -4], [4, 4], [-4, 4]], [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]]
+
+
+def spatial(moving: dict, fixed: dict, **region: object) -> Assembly:
+    data = {"schema": "fixture_design/assembly/1", "space": "spatial", "moving": moving, "name": "test"}
+    return assembly_from_data(data | {"fixed": fixed, "region": region}, "test.yaml")
+
+
+def features(body: Polyhedron) -> tuple[int, int, int, int]:
+    return len(body.vertices), len(body.edges), len(body.normals), len(body.pieces)
+
+
+def test_an_l_has_no_apex_and_no_edge_inside(tmp_path: Path) -> None:
+    """Twelve corners less the two inner ones, eighteen edges less the inner one, two facets that are not convex."""
+    assembly = spatial(prism(tmp_path / "l.obj", L_SHAPE, 0, 1), FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 2])
+    body = polyhedron_of(assembly.moving)
+    assert features(body) == (10, 17, 8, 2)
+    assert sum(piece.volume for piece in body.pieces) == pytest.approx(3, abs=1e-12)
+    assert sum(not ring for ring in body.rings) == 2
+
+
+def test_a_hole_has_edges_but_no_apices(tmp_path: Path) -> None:
+    """A plane that touches a corner of the hole touches its rim: the rim's edges and the walls are what can be met."""
+    assembly = spatial(FLOOR, prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE]), x=[-1, 1], y=[-1, 1], z=[0, 2])
+    body = polyhedron_of(assembly.fixed[0])
+    assert features(body) == (8, 12 + 8, 6 + 4, 4)
+    assert sum(piece.volume for piece in body.pieces) == pytest.approx(8 * 8 * 2 - 1.2**2 * 2, abs=1e-9)
+
+
+def test_a_step(tmp_path: Path) -> None:
+    """The ends of inner edges, on the sides, are no apices."""
+    steps = prism(tmp_path / "steps.obj", [[0, 0], [3, 0], [3, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]], 0, 1)
+    body = polyhedron_of(spatial(steps, FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 2]).moving)
+    assert features(body)[:3] == (12, 24 - 2, 10)
+
+
+def test_rims_are_distances_to_polygons() -> None:
+    """Against shapely: with holes, at random points, and on lines through corners, where crossings are counted."""
+    area = Polygon([[0, 0], [4, 0], [4, 3], [2, 1], [0, 3]], [[[1, 0.25], [2, 0.5], [1, 0.75]]])
+    rings = [np.array(ring.coords) for ring in (area.exterior, *area.interiors)]
+    border = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+    turned = rotations.matrices(rotations.from_vectors(np.array([[0.3, -0.4, 0.5]])))[0]
+    rims = PolygonRims.around(turned[:, 2][None], [np.dstack([border, np.zeros(border.shape[:2])]) @ turned.T])
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-1, 5, size=(400, 2))
+    points[:200, 1] = rng.choice([0, 0.25, 0.5, 0.75, 1, 3], size=200)
+    seen = np.column_stack([points, rng.normal(size=400)]) @ turned.T
+    expected = np.array([area.boundary.distance(Point(p)) * (-1 if area.contains(Point(p)) else 1) for p in points])
+    np.testing.assert_allclose(rims.beyond(seen[:, None])[:, 0], expected, atol=1e-12)
+    over, away = rims.over(seen[:, None], np.zeros((1, 1), dtype=int))
+    np.testing.assert_allclose(over[:, 0], np.maximum(expected, 0), atol=1e-12)
+    nearer, _ = rims.over(seen[:, None] - 1e-6 * away, np.zeros((1, 1), dtype=int))
+    outside = expected > 1e-3
+    np.testing.assert_allclose(over[outside, 0] - nearer[outside, 0], 1e-6, rtol=1e-5)
+
+
+def test_both_kinds_of_rims_agree_within() -> None:
+    corners = np.array([[0, 0, 0], [2, 0, 0], [3, 2, 0], [1, 3, 0.0]])
+    border = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    up = np.array([[0, 0, 1.0]])
+    points = np.random.default_rng(1).uniform([-1, -1, 0], [4, 4, 0], size=(300, 1, 3))
+    convex, any_kind = ConvexRims.around(up, [border]).beyond(points), PolygonRims.around(up, [border]).beyond(points)
+    np.testing.assert_allclose(convex[convex < 0], any_kind[convex < 0], atol=1e-12)
+    assert (any_kind[convex > 0] >= convex[convex > 0] - 1e-12).all()
+
+
+def test_overlap_is_that_of_prisms(tmp_path: Path) -> None:
+    """An L in a plate's hole, upright at any yaw: they overlap if and only if their outlines do, at one height."""
+    small = (np.array(L_SHAPE) * 0.3 - 0.3).tolist()
+    assembly = spatial(
+        prism(tmp_path / "l.obj", small, 0, 1),
+        prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE]),
+        x=[-1, 1], y=[-1, 1], z=[-3.2, 0.2],
+    )  # fmt: skip
+    geometry = geometry_of(assembly)
+    rng = np.random.default_rng(0)
+    xyz, yaw = rng.uniform([-0.7, -0.7, -3.2], [0.7, 0.7, 0.2], size=(300, 3)), rng.uniform(-np.pi, np.pi, 300)
+    turned = rotations.from_vectors(np.column_stack([np.zeros((300, 2)), yaw]))
+    depth = geometry.overlap(np.column_stack([xyz, turned]))
+    plate = Polygon(PLATE, [HOLE])
+    c, s = np.cos(yaw), np.sin(yaw)
+    outlines = shapely.polygons(
+        np.einsum("nij,vj->nvi", np.moveaxis(np.array([[c, -s], [s, c]]), -1, 0), small) + xyz[:, None, :2]
+    )
+    expected = (shapely.area(shapely.intersection(outlines, plate)) > 1e-9) & (xyz[:, 2] < 0) & (xyz[:, 2] > -3)
+    np.testing.assert_array_equal(depth > 1e-9, expected)
+    assert 30 < expected.sum() < 270
+
+
+def test_an_l_on_a_plane(tmp_path: Path) -> None:
+    """It stands as its convex hull does, a prism with five sides; its inner facets touch nothing."""
+    body = prism(tmp_path / "l.obj", L_SHAPE, -0.5, 0.5) | {"pose": {"xyz": [-0.7, -0.7, 0]}}
+    graph = state_graph(spatial(body, FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 3]), samples=4)
+    assert sorted(len(state.contacts) for state in graph.states) == [0] + [1] * 10 + [2] * 15 + [4] * 5 + [5] * 2
+    for state in graph.states:
+        for q in state.samples:
+            assert state_at(graph.assembly, q).contacts == state.contacts
+
+
+@pytest.mark.slow
+def test_a_square_peg_over_a_hole_in_one_mesh(tmp_path: Path) -> None:
+    """The states that four boxes around a hole have, counted in `test_space`."""
+    plate = prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE])
+    region: dict = {"x": [-0.5, 0.5], "y": [-0.5, 0.5], "z": [-0.4, 1.5], "rotation": "fixed"}
+    graph = state_graph(spatial({"box": [1, 1, 1]}, plate, **region), samples=4)
+    assert len(graph.states) == 1 + 4 + 4 + (5 * 5 - 1)
+    assert all(state_at(graph.assembly, q).admissible for state in graph.states for q in state.samples)
+
+
+def test_round_parts_are_refused_by_name(tmp_path: Path) -> None:
+    circle = np.array([[np.cos(t), np.sin(t)] for t in np.linspace(0, 2 * np.pi, 48, endpoint=False)])
+    with pytest.raises(UnsupportedError, match=r"round surfaces \(cylinder 1\)"):
+        state_graph(
+            spatial(prism(tmp_path / "round.obj", circle.tolist(), 0, 3), FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 3])
+        )
+
+
+def test_the_factory_peg_and_hole() -> None:
+    """The peg has bevelled edges, cut into hundreds of triangles; it has the play of its data sheet."""
+    folder = SHARED / "IsaacGymEnvs" / "assets" / "factory" / "urdf"
+    if not folder.is_dir():
+        pytest.skip("needs the shared data")
+    peg, hole = (
+        {"urdf": str(folder / f"factory_rectangular_{name}_8mm{kind}.urdf")}
+        for name, kind in (("peg", "_loose"), ("hole", ""))
+    )
+    assembly = spatial(peg, hole, x=[-0.01, 0.01], y=[-0.01, 0.01], z=[-0.001, 0.03])
+    geometry = geometry_of(assembly)
+    assert features(geometry.moving) == (16, 24, 10, 1)  # type: ignore[attr-defined]
+    assert features(geometry.fixed[0]) == (8, 20, 10, 4)  # type: ignore[attr-defined]
+    assert state_at(assembly, [0, 0, 0.001, 1, 0, 0, 0]).contacts == ()
+    # the mesh has the sides of the sheet to six decimals
+    play = (0.008144 - 0.007964) / 2
+    assert play == pytest.approx((0.0081444 - 0.007964) / 2, abs=1e-6)
+    walls = {contact.split(" - ")[1] for contact in state_at(assembly, [play, 0, 0.001, 1, 0, 0, 0], 1e-8).contacts}
+    assert len([wall for wall in walls if wall.startswith("facet")]) == 1
+    assert not state_at(assembly, [play + 1e-6, 0, 0.001, 1, 0, 0, 0]).admissible
