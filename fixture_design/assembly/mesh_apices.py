@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from fixture_design.arrays import Mask, Points
 from fixture_design.assembly.mesh_edges import MeshEdges
 from fixture_design.cones.kernel.minimum_norm import minimum_norm_point
 from fixture_design.errors import UnsupportedError, format_length
-from fixture_design.geometry import PartGeometry
 from fixture_design.tolerances import COPLANAR_ANGLE, SOLVED
+
+if TYPE_CHECKING:
+    from fixture_design.geometry import PartGeometry
 
 #: Singular values of unit normals below this: the planes leave a direction open, along which nothing is moved [-].
 _OPEN = 1e-3

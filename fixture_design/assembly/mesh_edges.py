@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Int
 
 from fixture_design.arrays import Indices, Mask
 from fixture_design.errors import UnsupportedError
-from fixture_design.geometry import PartGeometry
 from fixture_design.tolerances import COPLANAR_ANGLE
+
+if TYPE_CHECKING:
+    from fixture_design.geometry import PartGeometry
 
 Two = Int[np.ndarray, "_ 2"]
 

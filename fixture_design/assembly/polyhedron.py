@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
@@ -14,8 +15,10 @@ from fixture_design.assembly.mesh_apices import corner_points, touching_apices
 from fixture_design.assembly.mesh_edges import MeshEdges, mesh_edges
 from fixture_design.assembly.polytope import Polytope
 from fixture_design.errors import UnsupportedError
-from fixture_design.geometry import PartGeometry, load_part
 from fixture_design.layout import Part, Pose
+
+if TYPE_CHECKING:
+    from fixture_design.geometry import PartGeometry
 
 #: A shell is convex if its hull has no more than this much more volume [-].
 _CONVEX = 1e-6
@@ -95,6 +98,8 @@ def polyhedron_of(body: AssemblyBody) -> Polyhedron:
     if body.box is not None:
         points = (np.array(list(np.ndindex(2, 2, 2)), dtype=np.float64) - 0.5) * body.box
         return Polyhedron.convex(Polytope.hull_of(points if body.pose is None else body.pose.points(points)))
+    from fixture_design.geometry import PartGeometry, load_part  # noqa: PLC0415 - only where a file is read
+
     assert body.file is not None
     kind = "mesh" if body.kind == "mesh" else "urdf"
     part = Part(body.file.stem, kind, body.file, None, body.scale, Pose.identity(3))

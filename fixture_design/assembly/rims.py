@@ -23,7 +23,7 @@ class Rims(Protocol):
         ...
 
     def beyond(self, points: np.ndarray) -> np.ndarray:
-        """How far points (n, f, 3) are beyond each rim, negative within, shape (n, f) [m]."""
+        """How far points (n, a, 3) are beyond every rim, negative within, shape (n, a, f) [m]."""
         ...
 
 
@@ -60,7 +60,9 @@ class ConvexRims:
         return over, np.take_along_axis(sides[..., :3], worst[..., None, None], axis=-2)[..., 0, :]
 
     def beyond(self, points: np.ndarray) -> np.ndarray:
-        return (np.einsum("pki,npi->npk", self.sides[..., :3], points) - self.sides[..., 3]).max(axis=-1)
+        flat = self.sides.reshape(-1, 4)
+        beyond = points @ flat[:, :3].T - flat[:, 3]
+        return beyond.reshape(*points.shape[:2], *self.sides.shape[:2]).max(axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,7 @@ class PolygonRims:
         return np.where(inside, 0.0, distance), (flat[..., None] * rims.bases).sum(axis=-2)
 
     def beyond(self, points: np.ndarray) -> np.ndarray:
-        _, distance, inside = self.of(np.arange(len(self.bases))[None])._seen(points)
+        _, distance, inside = self._seen(points[:, :, None])
         return np.where(inside, -distance, distance)
 
     def _seen(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

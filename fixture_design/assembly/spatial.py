@@ -74,6 +74,9 @@ class SpatialGeometry:
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(rotations.matrices(q[:, 3:]), q[:, :3], chosen)
 
+    def distances(self, q: np.ndarray) -> np.ndarray:
+        return self.pairs.distances(rotations.matrices(q[:, 3:]), q[:, :3])
+
     def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         return self.pairs.arms(rotations.matrices(q[:, 3:]), q[:, :3], chosen)
 

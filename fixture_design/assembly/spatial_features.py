@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Points, Weights
+from fixture_design.arrays import Points, Weights
 from fixture_design.assembly.assembly import Region
 from fixture_design.assembly.contact_geometry import refuse_too_many
 from fixture_design.assembly.polyhedron import Polyhedron
 from fixture_design.assembly.rims import ConvexRims, PolygonRims, Rims
-from fixture_design.assembly.spatial_pairs import EdgePairs, FacetPairs, SpatialPairs, rows_of
+from fixture_design.assembly.spatial_pairs import EdgePairs, FacetPairs, SpatialPairs
 from fixture_design.assembly.together import intervals, overlapping
 from fixture_design.errors import AssemblyError
 from fixture_design.tolerances import TOUCHING
@@ -100,15 +100,18 @@ def pairs_in_reach(
     )
     names = [f"{a[i]} - {b[j]}" for (a, b), rows in zip(kinds, groups, strict=True) for i, j in rows]
     sizes = np.array([len(rows) for rows in groups])
-    (a, f), (g, v), (e, h) = (rows_of(rows) for rows in groups)
-    built = (_facet_pairs(mine.apices[a], theirs, f, True), _facet_pairs(theirs.apices[v], mine, g, False))
-    edge_pairs = EdgePairs(mine.edges[e], theirs.edges[h], theirs.outward[h])
-    return SpatialPairs(tuple(names), (*built, edge_pairs), sizes), _together(mine, theirs, groups)
+    built = (
+        _facet_pairs(mine.apices, theirs, facets, True),
+        _facet_pairs(theirs.apices[apices], mine, list(range(len(mine.facets))), False),
+        EdgePairs(mine.edges, theirs.edges[edges], theirs.outward[edges]),
+    )
+    return SpatialPairs(tuple(names), built, sizes), _together(mine, theirs, groups)
 
 
-def _facet_pairs(apices: Points, facets: _Side, chosen: Indices, apex_moves: bool) -> FacetPairs:
-    normals, offsets = facets.planes()
-    return FacetPairs(apex_moves, apices, normals[chosen], offsets[chosen], facets.rims().of(chosen))
+def _facet_pairs(apices: Points, side: _Side, facets: list[int], apex_moves: bool) -> FacetPairs:
+    normals, offsets = side.planes()
+    chosen = np.array(facets, dtype=int)
+    return FacetPairs.of(apex_moves, apices, (normals[chosen], offsets[chosen]), side.rims().of(chosen))
 
 
 def _together(mine: _Side, theirs: _Side, groups: list[list[tuple[int, int]]]) -> np.ndarray:

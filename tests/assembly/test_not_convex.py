@@ -66,7 +66,7 @@ def test_rims_are_distances_to_polygons() -> None:
     points[:200, 1] = rng.choice([0, 0.25, 0.5, 0.75, 1, 3], size=200)
     seen = np.column_stack([points, rng.normal(size=400)]) @ turned.T
     expected = np.array([area.boundary.distance(Point(p)) * (-1 if area.contains(Point(p)) else 1) for p in points])
-    np.testing.assert_allclose(rims.beyond(seen[:, None])[:, 0], expected, atol=1e-12)
+    np.testing.assert_allclose(rims.beyond(seen[:, None])[:, 0, 0], expected, atol=1e-12)
     over, away = rims.over(seen[:, None], np.zeros((1, 1), dtype=int))
     np.testing.assert_allclose(over[:, 0], np.maximum(expected, 0), atol=1e-12)
     nearer, _ = rims.over(seen[:, None] - 1e-6 * away, np.zeros((1, 1), dtype=int))

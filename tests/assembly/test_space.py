@@ -143,3 +143,13 @@ def test_a_cube_in_a_corner() -> None:
     graph = state_graph(spatial({"box": [1, 1, 1]}, FLOOR, *walls, region=region), samples=4)
     walls_touched = [len({contact.split(" - ")[1] for contact in state.contacts}) for state in graph.states]
     assert [walls_touched.count(k) for k in range(4)] == [1, 3 * 26, 3 * 240, 336]
+
+
+def test_distances_are_those_of_the_equations() -> None:
+    """All pairs at once, by products of features, against pair by pair; one moving part inclined, edges parallel."""
+    assembly = spatial({"box": [1, 0.8, 0.6]}, {"box": [1, 1, 1]}, region={"x": [-1, 1], "y": [-1, 1], "z": [-1, 1]})
+    geometry = geometry_of(assembly)
+    q = geometry.random(np.random.default_rng(1), 40)
+    q[:10, 3:] = [1, 0, 0, 0]
+    expected = geometry.equations(q, np.arange(len(geometry.names))[None]).distances
+    np.testing.assert_allclose(geometry.distances(q), expected, atol=1e-12)
