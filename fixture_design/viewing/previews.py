@@ -16,7 +16,7 @@ from fixture_design.design import DesignResult
 from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.geometry.input_files import input_files
 from fixture_design.io import read_graph, read_layout
-from fixture_design.io.documents import read_document
+from fixture_design.io.graph_file import is_graph
 from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.graph_page import graph_page
@@ -97,7 +97,7 @@ def preview(
     """
     if isinstance(thing, str | Path):
         path = Path(thing)
-        found = preview(read_graph(path) if _is_graph(path) else read_layout(path), verdict, show)
+        found = preview(read_graph(path) if is_graph(path) else read_layout(path), verdict, show)
         return Preview(found.shown, (path, *found.inputs), found.planar)
     if isinstance(thing, ContactStateGraph):
         graph_page(thing)  # in space it says that it is not drawn
@@ -120,8 +120,3 @@ def _beginning(scene: Scene, show: str | None) -> Scene:
     if show not in known:
         raise UnknownNameError("answer with something to see", show, set(known))
     return replace(scene, first=[f"{story.group}:{story.claim}" for story in scene.stories].index(show))
-
-
-def _is_graph(path: Path) -> bool:
-    schema = read_document(path).values.get("schema")
-    return isinstance(schema, str) and schema.startswith("fixture_design/graph/")

@@ -7,11 +7,11 @@ import pytest
 import shapely
 from shapely.geometry import Point, Polygon
 
-from fixture_design.assembly import Assembly, rotations, state_at, state_graph
+from fixture_design.assembly import Assembly, contacts_at, rotations, state_at, state_control, state_graph
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.polyhedron import Polyhedron, polyhedron_of
 from fixture_design.assembly.rims import ConvexRims, PolygonRims
-from fixture_design.errors import UnsupportedError
+from fixture_design.errors import AssemblyError, UnsupportedError
 from fixture_design.io import assembly_from_data
 from tests.assembly.solids import prism
 from tests.geometry.parts import SHARED
@@ -115,6 +115,39 @@ def test_an_l_on_a_plane(tmp_path: Path) -> None:
     for state in graph.states:
         for q in state.samples:
             assert state_at(graph.assembly, q).contacts == state.contacts
+
+
+#: Where a unit cube is in the hole of the plate, and what its motions are: those of a wall, of a concave corner, of the
+#: plate's top, none, and at the rim those above or inside it.
+IN_THE_HOLE = {
+    (0.1, 0, 0.3): (4, 3, 4, 1),
+    (0.1, 0.1, 0.3): (6, 1, 8, 1),
+    (0.3, 0, 0.5): (4, 3, 4, 1),
+    (0, 0, 0.5): (0, 6, 0, 1),
+    (0.1, 0, 0.5): (2, 4, 0, 4),
+}
+
+
+@pytest.mark.parametrize("place", IN_THE_HOLE)
+def test_contacts_and_control_in_space(tmp_path: Path, place: tuple[float, float, float]) -> None:
+    """Contacts, dimensions of free motion, spans of the forces, cones of displacements."""
+    assembly = spatial({"box": [1, 1, 1]}, prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE]), x=[-1, 1], y=[-1, 1],
+                       z=[-3, 2])  # fmt: skip
+    contacts, control = contacts_at(assembly, [*place, 1, 0, 0, 0]), state_control(assembly, [*place, 1, 0, 0, 0])
+    cones = len(list(control.displacements))
+    assert (len(contacts), len(control.position_controlled), len(control.forces.spans), cones) == IN_THE_HOLE[place]
+
+
+def test_normals_in_space_are_face_vectors(tmp_path: Path) -> None:
+    """A corner on a floor, an edge across an edge: leaving is admissible, entering is not."""
+    assembly = spatial({"box": [1, 1, 1]}, FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 2])
+    (q,) = rotations.from_vectors(np.array([[0.3, 0.4, 0]]))
+    height = -(rotations.matrices(q[None])[0] @ (np.array(list(np.ndindex(2, 2, 2))).T - 0.5))[2].min()
+    (contact,) = contacts_at(assembly, [0, 0, height, *q])
+    np.testing.assert_allclose(contact.normals, [[0, 0, -1]], atol=1e-12)
+    assert contact.point[2] == pytest.approx(-height, abs=1e-12)
+    with pytest.raises(AssemblyError, match="overlap"):
+        contacts_at(assembly, [0, 0, height - 1e-3, *q])
 
 
 @pytest.mark.slow
