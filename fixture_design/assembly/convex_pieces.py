@@ -69,7 +69,7 @@ class _PlaneFacet:
     def __init__(self, normal: np.ndarray, offset: float, border: np.ndarray) -> None:
         self.normal, self.offset = normal, offset
         self.basis = np.linalg.svd(normal[None])[2][1:]
-        self.area = _area(border @ self.basis.T)
+        self.area = surrounded(border @ self.basis.T)
 
     def runs_through(self, cell: Polytope, size: float) -> bool:
         """Whether a piece of the facet is inside the cell."""
@@ -83,7 +83,7 @@ class _PlaneFacet:
         return section.intersection(self.area).area > _AREA * size**2
 
 
-def _area(border: np.ndarray) -> BaseGeometry:
+def surrounded(border: np.ndarray) -> BaseGeometry:
     """What segments (k, 2, 2) surround an odd number of times: a polygon, with holes and islands in them."""
     from shapely import polygonize, unary_union  # noqa: PLC0415 - as above
     from shapely.geometry import MultiLineString, Polygon  # noqa: PLC0415 - as above

@@ -7,12 +7,25 @@ import pytest
 import shapely
 from shapely.geometry import Point, Polygon
 
-from fixture_design.assembly import Assembly, contacts_at, rotations, state_at, state_control, state_graph
+from fixture_design.assembly import (
+    Assembly,
+    ContactStateGraph,
+    contacts_at,
+    rotations,
+    state_at,
+    state_control,
+    state_graph,
+)
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.polyhedron import Polyhedron, polyhedron_of
 from fixture_design.assembly.rims import ConvexRims, PolygonRims
 from fixture_design.errors import AssemblyError, UnsupportedError
-from fixture_design.io import assembly_from_data
+from fixture_design.io import assembly_from_data, write_graph
+from fixture_design.viewing import graph_picture, preview
+from fixture_design.viewing.graph_outlines import outlines_of
+from fixture_design.viewing.graph_scene import graph_scene
+from fixture_design.viewing.graph_solids import drawn
+from fixture_design.viewing.scene.shapes import Mesh, Sphere
 from tests.assembly.solids import prism
 from tests.geometry.parts import SHARED
 
@@ -107,14 +120,63 @@ def test_overlap_is_that_of_prisms(tmp_path: Path) -> None:
     assert 30 < expected.sum() < 270
 
 
-def test_an_l_on_a_plane(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def graph(tmp_path_factory: pytest.TempPathFactory) -> ContactStateGraph:
+    """An L on a plane."""
+    body = prism(tmp_path_factory.mktemp("parts") / "l.obj", L_SHAPE, -0.5, 0.5) | {"pose": {"xyz": [-0.7, -0.7, 0]}}
+    return state_graph(spatial(body, FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 3]), samples=4)
+
+
+def test_an_l_on_a_plane(graph: ContactStateGraph) -> None:
     """It stands as its convex hull does, a prism with five sides; its inner facets touch nothing."""
-    body = prism(tmp_path / "l.obj", L_SHAPE, -0.5, 0.5) | {"pose": {"xyz": [-0.7, -0.7, 0]}}
-    graph = state_graph(spatial(body, FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 3]), samples=4)
     assert sorted(len(state.contacts) for state in graph.states) == [0] + [1] * 10 + [2] * 15 + [4] * 5 + [5] * 2
     for state in graph.states:
         for q in state.samples:
             assert state_at(graph.assembly, q).contacts == state.contacts
+
+
+def test_pictures_in_space(graph: ContactStateGraph, tmp_path: Path) -> None:
+    """A drawing for each state, with the facets that are seen: eight of the moving part at most, the floor's three."""
+    picture = graph_picture(graph)
+    assert picture.count("<title>") == len(graph.states)
+    assert picture.count("<line ") == len(graph.transitions)
+    outlines = [list(outlines_of(graph, 100.0, 80.0)(state)) for state in graph.states]
+    seen = [len(each) - 2 * 3 for each in outlines]
+    assert min(seen) >= 1
+    assert max(seen) <= 7
+    preview(graph).save(tmp_path / "graph.png")
+    assert (tmp_path / "graph.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_hole_is_drawn_as_one(tmp_path: Path) -> None:
+    """Both plane sides have an outer ring one way round and an inner one the other; triangles cover what is left."""
+    assembly = spatial(FLOOR, prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE]), x=[-1, 1], y=[-1, 1], z=[0, 2])
+    body = drawn(assembly.fixed[0])
+    assert sorted(len(facet.rings) for facet in body.facets) == [1] * 8 + [2] * 2
+    a, b, c = (body.mesh.vertices[body.mesh.triangles[:, k]] for k in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+    assert area == pytest.approx(2 * (64 - 1.44) + 4 * 8 * 2 + 4 * 1.2 * 2, abs=1e-9)
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    assert volume == pytest.approx(8 * 8 * 2 - 1.44 * 2, abs=1e-9)
+
+
+def test_a_preview_in_space_has_every_state(graph: ContactStateGraph, tmp_path: Path) -> None:
+    """One story a state, with a dot where each contact is; the page loads nothing and names them all."""
+    scene = graph_scene(graph)
+    assert [story.claim for story in scene.stories] == [state.id for state in graph.states]
+    for story, state in zip(scene.stories, graph.states, strict=True):
+        dots = [thing.shape for thing in story.things if isinstance(thing.shape, Sphere)]
+        assert len(dots) == len(state.contacts)
+        assert all(abs(dot.center[2]) < 1e-9 for dot in dots)
+        low = min(thing.shape.vertices[:, 2].min() for thing in story.things if isinstance(thing.shape, Mesh))
+        assert (abs(low) < 1e-9) == bool(state.contacts)
+    write_graph(graph, tmp_path / "graph.json")
+    preview(tmp_path / "graph.json").save(tmp_path / "graph.html")
+    page = (tmp_path / "graph.html").read_text()
+    assert page.count('class="answer"') == len(graph.states)
+    assert "33 contact states" in page
+    assert "pushes that balance" not in page
+    assert "default-src 'none'" in page.replace("&#x27;", "'")
 
 
 #: Where a unit cube is in the hole of the plate, and what its motions are: those of a wall, of a concave corner, of the
