@@ -64,6 +64,10 @@ class ContactGeometry(Protocol):
         """Contact equations of chosen pairs; q of shape (n, c), chosen of shape (n, m) or (1, m)."""
         ...
 
+    def distances(self, q: np.ndarray) -> np.ndarray:
+        """H of all pairs, shape (n, P) [m]."""
+        ...
+
     def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         """From the moving body's origin to the contact points of chosen pairs, fixed axes, (n, m, 2 or 3) [m]."""
         ...

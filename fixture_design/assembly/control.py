@@ -3,33 +3,56 @@
 from __future__ import annotations
 
 from itertools import product
+from math import prod
 
 import numpy as np
 
 from fixture_design.analysis.hybrid_control import HybridControl, hybrid_control
 from fixture_design.arrays import ArrayLike, Vector
 from fixture_design.assembly.assembly import Assembly
+from fixture_design.assembly.contact_geometry import ContactGeometry
+from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.planar import PlanarGeometry
+from fixture_design.assembly.spatial import SpatialGeometry
+from fixture_design.assembly.spatial_contacts import spatial_contacts
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone
 from fixture_design.contacts import Contact, face_vectors
 from fixture_design.contacts.polyhedral import polyhedral_clauses
 from fixture_design.errors import AssemblyError, UnsupportedError
 from fixture_design.tolerances import TOUCHING
 
+#: More combinations of alternatives than this are not listed.
+MOST_CHOICES = 1024
+
 
 def contacts_at(assembly: Assembly, configuration: ArrayLike) -> tuple[Contact, ...]:
-    """The contacts of a planar configuration, points from the moving body's origin, fixed axes (3-34).
+    """The contacts of a configuration, points from the moving body's origin, fixed axes (3-34).
 
     Every pair that touches counts, whether it is named or not. An apex within a facet has the part's outward normal;
-    two apices in one point are one contact, with the clauses of their wedges (an OR where both are convex).
+    apices in one point are one contact, with the clauses of their tangent cones (an OR where both are convex), and so
+    are in space apices on edges, and edges that end on each other.
 
     Raises:
-        UnsupportedError: an assembly in space.
-        AssemblyError: the parts overlap there.
+        AssemblyError: the parts overlap there; not as many numbers as a configuration has.
+        UnsupportedError: as `state_graph`.
     """
-    if assembly.space != "planar":
-        raise UnsupportedError("contacts of states are for planar assemblies so far", source=assembly.source)
-    return planar_contacts(PlanarGeometry.of(assembly), np.asarray(configuration, dtype=np.float64))
+    return contacts_of(geometry_of(assembly), configuration)
+
+
+def contacts_of(geometry: ContactGeometry, configuration: ArrayLike) -> tuple[Contact, ...]:
+    """As `contacts_at`, for a geometry that is there already.
+
+    Raises:
+        AssemblyError: the parts overlap there; not as many numbers as a configuration has.
+    """
+    q = np.asarray(configuration, dtype=np.float64)
+    numbers = 3 if geometry.dimension == 3 else 7
+    if q.shape != (numbers,) or not np.isfinite(q).all():
+        raise AssemblyError(f"a configuration is {numbers} finite numbers", found=f"{q.tolist()}"[:60])
+    if isinstance(geometry, PlanarGeometry):
+        return planar_contacts(geometry, q)
+    assert isinstance(geometry, SpatialGeometry)
+    return spatial_contacts(geometry, q)
 
 
 def planar_contacts(geometry: PlanarGeometry, configuration: Vector) -> tuple[Contact, ...]:
@@ -56,16 +79,30 @@ def planar_contacts(geometry: PlanarGeometry, configuration: Vector) -> tuple[Co
 def state_control(assembly: Assembly, configuration: ArrayLike) -> HybridControl:
     """Position- and force-controlled sets at a configuration: A, F and their subspaces, about the moving body's origin.
 
-    Raises: as `contacts_at`.
+    Raises:
+        UnsupportedError: more than `MOST_CHOICES` combinations of alternatives; else as `contacts_at`.
     """
-    clauses = [
-        (contact.point, clause) for contact in contacts_at(assembly, configuration) for clause in contact.clauses
-    ]
+    return control_of(geometry_of(assembly), configuration)
+
+
+def control_of(geometry: ContactGeometry, configuration: ArrayLike) -> HybridControl:
+    """As `state_control`, for a geometry that is there already.
+
+    Raises: as `state_control`.
+    """
+    contacts = contacts_of(geometry, configuration)
+    clauses = [(contact.point, clause) for contact in contacts for clause in contact.clauses]
+    choices = prod(len(clause) for _, clause in clauses)
+    if choices > MOST_CHOICES:
+        raise UnsupportedError(
+            f"{choices} cones make the displacements that are admissible here", expected=f"at most {MOST_CHOICES}"
+        )
+    dimension = geometry.dimension
+    points = np.array([point for point, _ in clauses])
     cones = []
     for choice in product(*(clause for _, clause in clauses)):
-        points = np.array([point for point, _ in clauses]).reshape(-1, 2)
-        rows = face_vectors(points, np.array(choice).reshape(-1, 2))
-        cones.append(PolyhedralConvexCone.from_faces(rows, dimension=3))
+        rows = face_vectors(points, np.array(choice)) if clauses else np.zeros((0, dimension))
+        cones.append(PolyhedralConvexCone.from_faces(rows, dimension=dimension))
     return hybrid_control(ConeUnion.of(cones))
 
 

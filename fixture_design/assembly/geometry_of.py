@@ -13,7 +13,7 @@ def geometry_of(assembly: Assembly) -> ContactGeometry:
 
     Raises:
         AssemblyError: bodies or names that cannot be used.
-        UnsupportedError: in space: bodies that are not convex, or too many features.
+        UnsupportedError: in space: bodies with round surfaces, or too many features.
     """
     if assembly.space == "planar":
         return PlanarGeometry.of(assembly)

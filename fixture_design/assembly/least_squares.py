@@ -19,8 +19,9 @@ _ENOUGH = 1e-1
 #: Damping of a step, relative to the squared distance that is left [-]: vanishes fast enough to converge quadratically.
 _DAMPING = 0.1
 
-#: Smallest damping [-]: steps stay finite where equations depend on each other.
-_LEAST_DAMPING = 1e-14
+#: Smallest damping, relative to the sum of the squares [-]: steps stay finite where equations depend on each other,
+#: also after rounding.
+_LEAST_DAMPING = 1e-13
 
 
 def solved(
@@ -66,6 +67,7 @@ def solved(
 def _step(gradients: np.ndarray, values: np.ndarray) -> np.ndarray:
     """The damped step; all is in units of the radius."""
     squares = np.einsum("nki,nkj->nij", gradients, gradients)
-    damping = _DAMPING * np.minimum((values**2).sum(axis=1), 1.0) + _LEAST_DAMPING
+    damping = _DAMPING * np.minimum((values**2).sum(axis=1), 1.0)
+    damping += _LEAST_DAMPING * (1.0 + np.einsum("nii->n", squares))
     squares += damping[:, None, None] * np.eye(squares.shape[1])
     return -np.linalg.solve(squares, np.einsum("nki,nk->ni", gradients, values)[..., None])[..., 0]

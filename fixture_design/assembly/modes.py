@@ -59,25 +59,51 @@ def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> 
     """
     rows = face_vectors[:, free]
     rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
-    found: dict[bytes, Mode] = {}
     lines, sides = _lines(rows[at_end])
     count = int(lines.max(initial=-1)) + 1
     if count > MOST_SIGNS:
         raise UnsupportedError(f"{count} contacts are at ends of facets at once, more than {MOST_SIGNS}")
+    modes = _Modes(rows, free)
     for signs in product((1.0, -1.0), repeat=count):
         signed = rows.copy()
         signed[at_end] *= (np.array(signs)[lines] * sides)[:, None]
-        for mode in _of_one_cone(signed, rows, turns[free]):
-            full = np.zeros(len(free))
-            full[free] = mode.displacement
-            # modes on the border of two sign patterns come from both
-            rates = rows @ mode.displacement
-            pattern = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
+        for displacement, kept in _of_one_cone(signed, modes, turns[free]):
+            modes.add(displacement, kept)
+    return list(modes.found.values())
+
+
+class _Modes:
+    """The modes found so far, each once: those on the border of two sign patterns come from both."""
+
+    def __init__(self, rows: Rows, free: Mask) -> None:
+        self.rows, self.free = rows, free
+        self.found: dict[bytes, Mode] = {}
+        self._depend: dict[bytes, bool] = {}
+
+    def add(self, displacement: Vector, kept: Mask) -> None:
+        """Takes a mode in, and where its contacts depend on each other those with some of them dropped."""
+        rates = self.rows @ displacement
+        pattern = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
+        direction = np.round(displacement, 3).tobytes()
+        full = np.zeros(len(self.free))
+        full[self.free] = displacement
+
+        def taken(kept: Mask) -> bool:
             # where contacts depend on each other, the first order does not tell all motions apart
-            doubtful = _dependent(rows[mode.kept]) or not pattern.any()
-            direction = np.round(mode.displacement, 3).tobytes() if doubtful else b""
-            found.setdefault(pattern.tobytes() + np.packbits(mode.kept).tobytes() + direction, Mode(full, mode.kept))
-    return list(found.values())
+            doubtful = self.dependent(kept) or not pattern.any()
+            key = pattern.tobytes() + np.packbits(kept).tobytes() + (direction if doubtful else b"")
+            return self.found.setdefault(key, mode := Mode(full, kept)) is mode
+
+        if taken(kept) and self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
+            for fewer in _with_dropped(kept):
+                taken(fewer)
+
+    def dependent(self, kept: Mask) -> bool:
+        """Whether the face vectors of some contacts depend on each other."""
+        key = np.packbits(kept).tobytes()
+        if key not in self._depend:
+            self._depend[key] = _dependent(self.rows[kept])
+        return self._depend[key]
 
 
 def _lines(rows: Rows) -> tuple[Indices, Weights]:
@@ -94,16 +120,16 @@ def _lines(rows: Rows) -> tuple[Indices, Weights]:
     return lines, sides
 
 
-def _of_one_cone(signed: Rows, rows: Rows, turns: Mask) -> Iterator[Mode]:
+def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask) -> Iterator[tuple[Vector, Mask]]:
     cone = convert_rows(signed, np.zeros((0, signed.shape[1])), _ROUNDED)
     faces = faces_of(len(cone.lines), cone.vectors, cone.incidence, signed.shape[1])
     along = [*cone.lines, *-cone.lines]
     for kept, witness in zip(faces.rows, faces.witnesses, strict=True):
         # along the lineality space nothing is left to first order: its own directions stand for it
         for displacement in [witness] if witness.any() else along:
-            yield from _with_dropped(displacement, kept, rows)
-        if witness.any() and len(cone.lines) and _dependent(rows[kept]):
-            yield from _with_dropped(_turned_least(witness, cone.lines, turns), kept, rows)
+            yield displacement, kept
+        if witness.any() and len(cone.lines) and modes.dependent(kept):
+            yield _turned_least(witness, cone.lines, turns), kept
 
 
 def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
@@ -113,16 +139,13 @@ def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
     return least / np.linalg.norm(least)
 
 
-def _with_dropped(displacement: Vector, kept: Mask, rows: Rows) -> Iterator[Mode]:
-    yield Mode(displacement, kept)
+def _with_dropped(kept: Mask) -> Iterator[Mask]:
     places = np.flatnonzero(kept)
-    if not _dependent(rows[kept]) or len(places) > _MOST_DROPPED:
-        return
     for choice in product((False, True), repeat=len(places)):
         if not all(choice):
             fewer = kept.copy()
             fewer[places] = choice
-            yield Mode(displacement, fewer)
+            yield fewer
 
 
 def _dependent(rows: Rows) -> bool:

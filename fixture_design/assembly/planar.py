@@ -70,6 +70,9 @@ class PlanarGeometry:
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(q, chosen)
 
+    def distances(self, q: np.ndarray) -> np.ndarray:
+        return self.equations(q, np.arange(len(self.names))[None]).distances
+
     def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         chosen = np.broadcast_to(chosen, (len(q), chosen.shape[1]))
         return np.take_along_axis(self.pairs.arms(q), chosen[..., None], axis=1)

@@ -1,4 +1,4 @@
-"""Convex bodies in space with their apices, edges and facets: boxes, and meshes that are convex."""
+"""Convex bodies in space with their apices, edges and facets."""
 
 from __future__ import annotations
 
@@ -8,12 +8,7 @@ import numpy as np
 from jaxtyping import Int
 
 from fixture_design.arrays import Indices, Points, Weights
-from fixture_design.assembly.assembly import AssemblyBody
-from fixture_design.errors import UnsupportedError
 from fixture_design.tolerances import COPLANAR_ANGLE, MERGE_VERTICES
-
-#: A mesh is convex if its hull has no more than this much more volume [-].
-_CONVEX = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +57,15 @@ class Polytope:
         along = self.vertices[self.edges[:, 1]] - self.vertices[self.edges[:, 0]]
         return along / np.linalg.norm(along, axis=1, keepdims=True)
 
+    @property
+    def volume(self) -> float:
+        """Each facet with the first vertex makes a pyramid [m^3]."""
+        first, total = self.vertices[0], 0.0
+        for ring in self.corners:
+            a, b, c = self.vertices[ring[0]], self.vertices[ring[1:-1]], self.vertices[ring[2:]]
+            total += float(((a - first) * np.cross(b - a, c - a).sum(axis=0)).sum()) / 6
+        return total
+
     def outward(self) -> Points:
         """For each edge the sum of its two facets' normals, shape (e, 3)."""
         result = []
@@ -78,43 +82,3 @@ def _around(vertices: Points, chosen: Indices, normal: np.ndarray) -> Indices:
     second = np.cross(normal, first)
     away = vertices[chosen] - center
     return chosen[np.argsort(np.arctan2(away @ second, away @ first))]
-
-
-def polytope_of(body: AssemblyBody) -> Polytope:
-    """The body as a polytope, in W or in the moving body's frame.
-
-    Raises:
-        GeometryError: a mesh that cannot be read.
-        UnsupportedError: a mesh that is not convex.
-    """
-    if body.box is not None:
-        corners = np.array(list(np.ndindex(2, 2, 2)), dtype=np.float64) - 0.5
-        points = corners * body.box
-    else:
-        points = _mesh_points(body)
-    return Polytope.hull_of(points if body.pose is None else body.pose.points(points))
-
-
-def _mesh_points(body: AssemblyBody) -> Points:
-    from scipy.spatial import ConvexHull  # noqa: PLC0415 - as above
-
-    from fixture_design.geometry import load_part  # noqa: PLC0415 - reads meshes
-    from fixture_design.layout import Part, Pose  # noqa: PLC0415 - as above
-
-    assert body.file is not None
-    kind = "mesh" if body.kind == "mesh" else "urdf"
-    part = Part(
-        name=body.file.stem, kind=kind, file=body.file, polygon=None, scale=body.scale, pose=Pose.identity(3),
-        mass=None, center=None, form_error=None,
-    )  # fmt: skip
-    geometry = load_part(part)
-    points = np.asarray(geometry.vertices)  # type: ignore[union-attr]
-    triangles = points[np.asarray(geometry.triangles)]  # type: ignore[union-attr]
-    volume = float(np.einsum("ij,ij->i", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum()) / 6
-    if ConvexHull(points).volume > volume * (1 + _CONVEX):
-        raise UnsupportedError(
-            "the body is not convex",
-            source=body.file,
-            expected="a convex body; several convex `fixed` bodies may touch",
-        )
-    return points

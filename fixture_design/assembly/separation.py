@@ -41,19 +41,20 @@ class SeparatingAxes:
         return np.concatenate(parts) if parts else np.zeros(0)
 
     def _overlap(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
-        placed = np.einsum("nij,vj->nvi", R, self.mine) + position[:, None]
-        turned = np.einsum("nij,kj->nki", R, self.my_edges)
+        back = np.swapaxes(R, 1, 2)
+        placed = self.mine @ back + position[:, None]
+        turned = self.my_edges @ back
         crossed = np.cross(turned[:, :, None], self.their_edges[None, None]).reshape(len(R), -1, 3)
         lengths = np.linalg.norm(crossed, axis=-1)
         axes = np.concatenate(
             [
-                np.einsum("nij,kj->nki", R, self.my_normals),
+                self.my_normals @ back,
                 np.broadcast_to(self.their_normals, (len(R), *self.their_normals.shape)),
                 crossed / np.where(lengths > PARALLEL, lengths, 1.0)[..., None],
             ],
             axis=1,
         )
-        mine, theirs = np.einsum("nki,nvi->nkv", axes, placed), np.einsum("nki,vi->nkv", axes, self.theirs)
+        mine, theirs = axes @ np.swapaxes(placed, 1, 2), axes @ self.theirs.T
         apart = np.maximum(mine.min(axis=2) - theirs.max(axis=2), theirs.min(axis=2) - mine.max(axis=2))
         known = np.concatenate(
             [np.ones((len(R), axes.shape[1] - lengths.shape[1]), dtype=bool), lengths > PARALLEL], axis=1

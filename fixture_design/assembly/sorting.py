@@ -58,7 +58,7 @@ def joined(parts: Sequence[Sorted]) -> Sorted:
 
 
 def _sorted(geometry: ContactGeometry, q: np.ndarray) -> Sorted:
-    distances = geometry.equations(q, np.arange(len(geometry.names))[None]).distances
+    distances = geometry.distances(q)
     touching = distances <= TOUCHING * geometry.size
     inside = geometry.inside(q)
     admissible = inside.copy()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
 
-from fixture_design.arrays import Indices, Weights
+from fixture_design.arrays import Indices, Points, Weights
 from fixture_design.assembly.pair_equations import PairEquations
+from fixture_design.assembly.rims import Rims
 
 Space = Float[np.ndarray, "_ 3"]
 
@@ -18,73 +20,131 @@ PARALLEL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class FacetPairs:
-    """Apex - facet pairs of one kind: the apex moves, or the facet does.
+    """All apex - facet pairs of one kind: the apices move, or the facets do; in the order of the moving features.
 
     Attributes:
-        apices: shape (p, 3), in the apex's frame.  normals, offsets: of the facets, in their own.
-        rims: shape (p, k, 4): unit vectors in the facet's plane, out of it across each side, and offsets; the last
-            sides of facets with fewer are repeated.
+        apices: shape (a, 3), in their own frame.  normals, offsets: of the facets, in theirs, shapes (f, 3), (f,).
+        rims: of the facets.
+        apex, facet: of each pair, shape (p,).
     """
 
     apex_moves: bool
     apices: Space
     normals: Space
     offsets: Weights
-    rims: Float[np.ndarray, "_ _ 4"]
+    rims: Rims
+    apex: Indices
+    facet: Indices
+
+    @classmethod
+    def of(cls, apex_moves: bool, apices: Points, planes: tuple[Points, Weights], rims: Rims) -> FacetPairs:
+        """Every apex with every facet."""
+        first, second = np.divmod(
+            np.arange(len(apices) * len(planes[1])), len(planes[1]) if apex_moves else len(apices)
+        )
+        rows = (first, second) if apex_moves else (second, first)
+        return cls(apex_moves, apices, *planes, rims, *rows)
 
     def equations(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values (n, m, 3), the last one zero, and gradients (n, m, 3, 6)."""
         points, arms, sign = self._seen(R, position, chosen)
-        normals, rims = self.normals[chosen], self.rims[chosen]
-        gap = np.einsum("nmi,nmi->nm", normals, points) - self.offsets[chosen]
-        beyond = np.einsum("nmki,nmi->nmk", rims[..., :3], points) - rims[..., 3]
-        worst = beyond.argmax(axis=-1)
-        over = np.maximum(np.take_along_axis(beyond, worst[..., None], axis=-1)[..., 0], 0.0)
-        across = np.take_along_axis(rims[..., :3], worst[..., None, None], axis=-2)[..., 0, :]
+        facet = self.facet[chosen]
+        normals = np.broadcast_to(self.normals[facet], points.shape)
+        gap = np.einsum("nmi,nmi->nm", normals, points) - self.offsets[facet]
+        over, across = self.rims.over(points, facet)
         gradients = [_gradient(self._in_world(R, direction), arms, sign) for direction in (normals, across)]
         gradients[1] = np.where((over > 0)[..., None], gradients[1], 0.0)
         values = np.stack([gap, over, np.zeros_like(gap)], axis=-1)
         return values, np.stack([*gradients, np.zeros_like(gradients[0])], axis=-2)
 
+    def distances(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """H of every pair, shape (n, p) [m]."""
+        gaps = self._places(R, position) @ self.normals.T - self.offsets
+        return np.hypot(self._in_order(gaps), np.maximum(self.beyond(R, position), 0.0))
+
     def beyond(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
         """How far each apex is beyond the rim, negative within it, shape (n, p) [m]."""
-        points, _, _ = self._seen(R, position, np.arange(len(self.apices))[None].repeat(len(R), axis=0))
-        return (np.einsum("pki,npi->npk", self.rims[..., :3], points) - self.rims[..., 3]).max(axis=-1)
+        return self._in_order(self.rims.beyond(self._places(R, position)))
 
     def levers(self, position: np.ndarray) -> np.ndarray:
         """Distances of the apices from the moving body's origin, shape (n, p) [m]."""
         if self.apex_moves:
-            return np.broadcast_to(np.linalg.norm(self.apices, axis=1), (len(position), len(self.apices)))
-        return np.linalg.norm(self.apices[None] - position[:, None], axis=-1)
+            lengths = np.linalg.norm(self.apices, axis=1)[self.apex]
+            return np.broadcast_to(lengths, (len(position), len(lengths)))
+        return np.linalg.norm(self.apices[None] - position[:, None], axis=-1)[:, self.apex]
 
     def arms(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         """From the moving body's origin to the apices, fixed axes, shape (n, m, 3) [m]."""
         return self._seen(R, position, chosen)[1]
 
+    def _places(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """All apices in the facets' frame, shape (n, a, 3) [m]."""
+        if self.apex_moves:
+            return self.apices @ np.swapaxes(R, 1, 2) + position[:, None]
+        return (self.apices - position[:, None]) @ R
+
+    def _in_order(self, table: np.ndarray) -> np.ndarray:
+        """From (n, apices, facets) to (n, p)."""
+        return (table if self.apex_moves else np.swapaxes(table, 1, 2)).reshape(len(table), len(self.apex))
+
     def _seen(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """The apices in the facets' frame, from the moving body's origin in fixed axes, and how a motion counts."""
+        apices = self.apices[self.apex[chosen]]
         if self.apex_moves:
-            arms = np.einsum("nij,nmj->nmi", R, self.apices[chosen])
+            arms = apices @ np.swapaxes(R, 1, 2)
             return arms + position[:, None], arms, 1.0
-        arms = self.apices[chosen] - position[:, None]
-        return np.einsum("nji,nmj->nmi", R, arms), arms, -1.0
+        arms = apices - position[:, None]
+        return arms @ R, arms, -1.0
 
     def _in_world(self, R: np.ndarray, directions: np.ndarray) -> np.ndarray:
-        return directions if self.apex_moves else np.einsum("nij,nmj->nmi", R, directions)
+        return directions if self.apex_moves else directions @ np.swapaxes(R, 1, 2)
 
 
 @dataclass(frozen=True, eq=False)
 class EdgePairs:
-    """Edge across edge.
+    """Every edge across every other, in the order of the moving edges.
 
     Attributes:
-        mine, theirs: the ends of the edges, shape (p, 2, 3), in the moving frame and in W.
-        outward: shape (p, 3), out of the fixed body at the fixed edge: tells which way the gap counts.
+        my_edges, their_edges: their ends, shapes (a, 2, 3) and (b, 2, 3), in the moving frame and in W.
+        their_outward: shape (b, 3), out of the fixed body at its edges: tells which way the gap counts.
     """
 
-    mine: Float[np.ndarray, "_ 2 3"]
-    theirs: Float[np.ndarray, "_ 2 3"]
-    outward: Space
+    my_edges: Float[np.ndarray, "_ 2 3"]
+    their_edges: Float[np.ndarray, "_ 2 3"]
+    their_outward: Space
+
+    @cached_property
+    def mine(self) -> np.ndarray:
+        """The moving edge of each pair, shape (p, 2, 3)."""
+        return np.repeat(self.my_edges, len(self.their_edges), axis=0)
+
+    @cached_property
+    def theirs(self) -> np.ndarray:
+        """The fixed edge of each pair, shape (p, 2, 3)."""
+        return np.tile(self.their_edges, (len(self.my_edges), 1, 1))
+
+    @cached_property
+    def outward(self) -> np.ndarray:
+        return np.tile(self.their_outward, (len(self.my_edges), 1))
+
+    def distances(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """H of every pair, shape (n, p) [m]: as `equations`, by products of all edges with all others."""
+        begin, end = (self.my_edges[:, k] @ np.swapaxes(R, 1, 2) + position[:, None] for k in range(2))
+        start, along = self.their_edges[:, 0], self.their_edges[:, 1] - self.their_edges[:, 0]
+        lengths = np.linalg.norm(self.my_edges[:, 1] - self.my_edges[:, 0], axis=1), np.linalg.norm(along, axis=1)
+        t, s = (end - begin) / lengths[0][:, None], along / lengths[1][:, None]
+        cosine = t @ s.T
+        # of the vector from the fixed edge's start to the moving edge's: along s, along t, along t X s
+        along_s = begin @ s.T - _dot(start, s)
+        along_t = _dot(begin, t)[..., None] - t @ start.T
+        triple = np.cross(begin, t) @ s.T - t @ np.cross(s, start).T
+        squared = 1.0 - cosine * cosine
+        parallel = squared < PARALLEL**2
+        squared = np.where(parallel, 1.0, squared)
+        here = (cosine * along_s - along_t) / squared, (along_s - cosine * along_t) / squared
+        over = [a - np.clip(a, 0.0, most) for a, most in zip(here, (lengths[0][:, None], lengths[1]), strict=True)]
+        found = np.sqrt(triple**2 / squared + over[0] ** 2 + over[1] ** 2)
+        return np.where(parallel, lengths[0][:, None] + lengths[1], found).reshape(len(R), len(self.mine))
 
     def equations(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values (n, m, 3): the gap along the common normal, and how far the crossing is beyond either edge's ends.
@@ -174,6 +234,10 @@ class SpatialPairs:
             gradients[:, columns] = np.where(here[..., None, None], found[1], gradients[:, columns])
         return PairEquations(values, gradients)
 
+    def distances(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """H of every pair, shape (n, P) [m]."""
+        return np.concatenate([group.distances(R, position) for group in self._some()], axis=1)
+
     def arms(self, R: np.ndarray, position: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         """From the moving body's origin to the contact points of chosen pairs (n, m), fixed axes, (n, m, 3) [m]."""
         chosen = np.broadcast_to(chosen, (len(R), chosen.shape[1]))
@@ -207,9 +271,3 @@ def _dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def _gradient(direction: np.ndarray, arm: np.ndarray, sign: float) -> np.ndarray:
     """[n, arm X n], with the sign of how the part's motion counts."""
     return sign * np.concatenate([direction, np.cross(arm, direction)], axis=-1)
-
-
-def rows_of(pairs: list[tuple[int, int]]) -> tuple[Indices, Indices]:
-    """The two columns of a list of pairs, which may be empty."""
-    table = np.array(pairs, dtype=int).reshape(-1, 2)
-    return table[:, 0], table[:, 1]

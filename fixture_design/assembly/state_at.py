@@ -48,7 +48,7 @@ def state_at(assembly: Assembly, configuration: ArrayLike, within: float | None 
     if q.shape != (numbers,) or not np.isfinite(q).all():
         raise AssemblyError(f"a configuration is {numbers} finite numbers", found=f"{q.tolist()}"[:60])
     near = TOUCHING * geometry.size if within is None else within
-    distances = geometry.equations(q[None], np.arange(len(geometry.names))[None]).distances
+    distances = geometry.distances(q[None])
     overlap = max(float(geometry.overlap(q[None])[0]), 0.0)
     admissible = bool(geometry.inside(q[None])[0]) and overlap <= near
     coincident = bool(geometry.coincident(q[None], near)[0])

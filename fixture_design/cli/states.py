@@ -1,4 +1,4 @@
-"""`fixture-design states ASSEMBLY`: the contact-state graph of two parts, or the state of one configuration."""
+"""`fixture-design states ASSEMBLY`: the contact-state graph of two parts, the state of one configuration, a path."""
 
 from __future__ import annotations
 
@@ -11,15 +11,23 @@ import typer
 
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say
+from fixture_design.cli.state_path import say_path
 from fixture_design.errors import InputError
-from fixture_design.io import dumps, graph_to_dict, read_assembly, write_graph, write_graphml
+from fixture_design.io import dumps, read_assembly, read_graph, write_graph, write_graphml
+from fixture_design.io.graph_file import is_graph
+from fixture_design.io.state_records import graph_with_control
 
 if TYPE_CHECKING:
     from fixture_design.assembly import Assembly, ContactStateGraph
 
 
 def states(
-    assembly: Annotated[Path, typer.Argument(help="Assembly file (YAML or JSON).", metavar="ASSEMBLY", readable=False)],
+    assembly: Annotated[
+        Path,
+        typer.Argument(
+            help="Assembly file (YAML or JSON), or a graph found before.", metavar="ASSEMBLY", readable=False
+        ),
+    ],
     out: Annotated[Path | None, typer.Option("-o", "--out", help="Graph file.", metavar="GRAPH.json")] = None,
     graphml: Annotated[
         Path | None, typer.Option("--graphml", help="The graph for other tools.", metavar="OUT.graphml")
@@ -33,20 +41,27 @@ def states(
     within: Annotated[
         float | None, typer.Option("--within", help="With --at: touching up to this distance [m].")
     ] = None,
+    path: Annotated[
+        tuple[str, str] | None,
+        typer.Option("--path", help="The way from one state to another, with its motions.", metavar="FROM TO"),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Of the random starts.")] = 0,
     samples: Annotated[int, typer.Option("--samples", help="Configurations kept of a state.", min=1)] = 10,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
 ) -> None:
-    """Find the contact states of two parts and the transitions between them, or the state of one configuration.
+    """Find the contact states of two parts and the transitions between them, the state of one configuration, or a path.
 
-    Exit code: 0, 2 bad input, 130 interrupted after saving what was found.
+    With --json each state has the sets of hybrid position/force control at its first configuration.
+
+    Exit code: 0, 1 no path was found, 2 bad input, 130 interrupted after saving what was found.
     """
-    parts = read_assembly(assembly)
+    given = read_graph(assembly) if is_graph(assembly) else None
+    parts = read_assembly(assembly) if given is None else given.assembly
     try:
         if at is not None:
             _say_state(parts, at, within, as_json)
             return
-        graph = _found(parts, seed, samples)
+        graph = given or _found(parts, seed, samples)
     except InputError as error:
         raise error.within(assembly) from error
     if out is not None:
@@ -57,8 +72,10 @@ def states(
         from fixture_design.viewing import write_graph_picture  # noqa: PLC0415 - only where asked for
 
         write_graph_picture(graph, png)
-    if as_json:
-        typer.echo(dumps(graph_to_dict(graph)))
+    if path is not None:
+        say_path(graph, *path, as_json)
+    elif as_json:
+        typer.echo(dumps(graph_with_control(graph)))
     else:
         _print_graph(graph)
     if not graph.complete:

@@ -97,6 +97,16 @@ def write_graphml(graph: ContactStateGraph, path: str | Path) -> None:
     write_text(Path(path), "\n".join(networkx.generate_graphml(plain)) + "\n")
 
 
+def is_graph(path: str | Path) -> bool:
+    """Whether a file says that it is a graph.
+
+    Raises:
+        FileFormatError: the file cannot be read.
+    """
+    schema = read_document(path).values.get("schema")
+    return isinstance(schema, str) and schema.startswith("fixture_design/graph/")
+
+
 def read_graph(path: str | Path) -> ContactStateGraph:
     """The graph in a file.
 

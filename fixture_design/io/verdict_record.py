@@ -65,8 +65,8 @@ def _group(group: GroupVerdict, brief: bool) -> Data:
     return data | {
         "admissible_displacements": None
         if displacements is None
-        else {"cones": [_cone(cone) for cone in displacements]},
-        "admissible_forces": None if forces is None else _cone(forces),
+        else {"cones": [cone_to_dict(cone) for cone in displacements]},
+        "admissible_forces": None if forces is None else cone_to_dict(forces),
         "bidirectional": list(group.bidirectional),
     }
 
@@ -88,7 +88,7 @@ def _finding(finding: Finding, brief: bool) -> Data:
     return data
 
 
-def _cone(cone: PolyhedralConvexCone) -> Data:
+def cone_to_dict(cone: PolyhedralConvexCone) -> Data:
     """Both forms; null for vectors that were not computed."""
     face, span = cone.face_form, cone.span_form
     return {

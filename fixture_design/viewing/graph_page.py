@@ -15,11 +15,7 @@ th, td { text-align: left; padding: .15rem .8rem .15rem 0; border-bottom: 1px so
 
 
 def graph_page(graph: ContactStateGraph) -> str:
-    """The graph's picture and its states, one HTML file.
-
-    Raises:
-        UnsupportedError: a graph in space.
-    """
+    """The graph's picture and its states, one HTML file."""
     head = tag(
         "head", Markup('<meta charset="utf-8">'),
         Markup(f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'),

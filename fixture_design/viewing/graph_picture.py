@@ -1,18 +1,17 @@
-"""The contact state graph as a drawing: a small picture of each planar state, in rows by the number of contacts."""
+"""The contact state graph as a drawing: a small picture of each state, in rows by the number of contacts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from io import BytesIO
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
-from fixture_design.assembly import AssemblyBody, ContactState, ContactStateGraph
+from fixture_design.assembly import ContactState, ContactStateGraph
 from fixture_design.errors import UnsupportedError
 from fixture_design.io.text_file import write_bytes, write_text
-from fixture_design.layout import Pose
+from fixture_design.viewing.graph_outlines import Outlines, outlines_of
 from fixture_design.viewing.markup import Markup, tag
 
 #: Width and height of a state's drawing, what is free around it, height of its name; in the drawing's units.
@@ -24,14 +23,14 @@ _IN_A_ROW = 12
 #: Units of the drawing in an inch of a PNG.
 _DOTS = 100.0
 
-_FIXED, _MOVING, _EDGE, _LINE = "#d5d0c8", "#1b6ca8", "#8a8580", "#9aa5ae"
+_EDGE, _LINE = "#8a8580", "#9aa5ae"
 
 
 def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
     """Writes the picture as SVG or PNG, by the name's end.
 
     Raises:
-        UnsupportedError: a graph in space, or another kind of picture.
+        UnsupportedError: another kind of picture.
         FileFormatError: the file cannot be written.
     """
     path = Path(path)
@@ -44,16 +43,12 @@ def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
 
 
 def graph_picture(graph: ContactStateGraph) -> Markup:
-    """The graph as SVG: states by their number of contacts from top to bottom, lines where a transition is direct.
-
-    Raises:
-        UnsupportedError: a graph in space.
-    """
-    _require_planar(graph)
+    """The graph as SVG: states by their number of contacts from top to bottom, lines where a transition is direct."""
+    outlines = outlines_of(graph, _WIDTH, _HEIGHT)
     places = _places(graph.states)
     width, height = _paper(places)
     lines = [_line(places[edge.loose], places[edge.tight]) for edge in graph.transitions]
-    drawings = [_drawing(graph, state, places[state.id]) for state in graph.states]
+    drawings = [_drawing(outlines, state, places[state.id]) for state in graph.states]
     return tag(
         "svg", tag("rect", width="100%", height="100%", fill="white"), *lines, *drawings,
         xmlns="http://www.w3.org/2000/svg", viewBox=f"0 0 {width:g} {height:g}", width=f"{width:g}",
@@ -86,12 +81,12 @@ def _line(above: tuple[float, float], below: tuple[float, float]) -> Markup:
     return tag("line", x1=start[0], y1=start[1], x2=end[0], y2=end[1], stroke=_LINE, stroke_width=0.7)
 
 
-def _drawing(graph: ContactStateGraph, state: ContactState, place: tuple[float, float]) -> Markup:
+def _drawing(outlines: Outlines, state: ContactState, place: tuple[float, float]) -> Markup:
     """One sample of a state, with its name below."""
     shapes = [
-        tag("polygon", points=" ".join(f"{x:.2f},{y:.2f}" for x, y in points.tolist()), fill=fill, fill_opacity=0.75,
+        tag("path", d=" ".join(map(_ring, outline.rings)), fill=outline.color, fill_opacity=outline.opacity,
             stroke="black", stroke_width=0.6)
-        for points, fill in _polygons(graph, state)
+        for outline in outlines(state)
     ]  # fmt: skip
     inner = tag("svg", *shapes, x=place[0], y=place[1], width=_WIDTH, height=_HEIGHT, overflow="hidden")
     frame = tag("rect", x=place[0], y=place[1], width=_WIDTH, height=_HEIGHT, fill="white", stroke=_frame(state))
@@ -100,17 +95,18 @@ def _drawing(graph: ContactStateGraph, state: ContactState, place: tuple[float, 
     return tag("g", title, frame, inner, name)
 
 
-def graph_png(graph: ContactStateGraph) -> bytes:
-    """The same drawing as PNG by matplotlib, which Drake brings along.
+def _ring(points: np.ndarray) -> str:
+    return "M" + "L".join(f"{x:.2f},{y:.2f}" for x, y in points.tolist()) + "Z"
 
-    Raises:
-        UnsupportedError: a graph in space.
-    """
+
+def graph_png(graph: ContactStateGraph) -> bytes:
+    """The same drawing as PNG by matplotlib, which Drake brings along."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - half a second of any start
     from matplotlib.figure import Figure  # noqa: PLC0415 - as above
-    from matplotlib.patches import Polygon, Rectangle  # noqa: PLC0415 - as above
+    from matplotlib.patches import PathPatch, Rectangle  # noqa: PLC0415 - as above
+    from matplotlib.path import Path as Curve  # noqa: PLC0415 - as above
 
-    _require_planar(graph)
+    outlines = outlines_of(graph, _WIDTH, _HEIGHT)
     places = _places(graph.states)
     width, height = _paper(places)
     figure = Figure(figsize=(width / _DOTS, height / _DOTS), dpi=1.5 * _DOTS)
@@ -123,8 +119,12 @@ def graph_png(graph: ContactStateGraph) -> bytes:
         place = places[state.id]
         frame = Rectangle(place, _WIDTH, _HEIGHT, facecolor="white", edgecolor=_frame(state), zorder=2)
         axes.add_patch(frame)
-        for points, fill in _polygons(graph, state):
-            shape = Polygon(points + place, facecolor=fill, edgecolor="black", linewidth=0.5, alpha=0.75, zorder=3)
+        for outline in outlines(state):
+            rings = [Curve(np.vstack([ring, ring[:1]]) + place, closed=True) for ring in outline.rings]
+            shape = PathPatch(
+                Curve.make_compound_path(*rings), facecolor=outline.color, edgecolor="black", linewidth=0.5,
+                alpha=outline.opacity, zorder=3,
+            )  # fmt: skip
             axes.add_patch(shape)
             shape.set_clip_path(frame)
         axes.text(place[0] + _WIDTH / 2, place[1] + _HEIGHT + _TEXT, state.id, ha="center", fontsize=_TEXT * 0.7)
@@ -138,36 +138,7 @@ def _frame(state: ContactState) -> str:
     return "#c1440e" if state.coincident else _EDGE
 
 
-def _require_planar(graph: ContactStateGraph) -> None:
-    if graph.assembly.space != "planar":
-        raise UnsupportedError("graphs in space are not drawn yet", source=graph.assembly.source)
-
-
 def _paper(places: dict[str, tuple[float, float]]) -> tuple[float, float]:
     """Width and height of the whole drawing."""
     width = max(x for x, _ in places.values()) + _WIDTH + _GAP
     return width, max(y for _, y in places.values()) + _HEIGHT + _ROW_GAP
-
-
-def _window(graph: ContactStateGraph) -> tuple[np.ndarray, np.ndarray]:
-    """What all drawings show: where samples are, widened to the drawing's shape and by half."""
-    positions = np.vstack([state.samples[:, :2] for state in graph.states if state.contacts] or [[[0.0, 0.0]]])
-    center = (positions.min(axis=0) + positions.max(axis=0)) / 2
-    half = float(np.ptp(positions, axis=0).max()) * 0.75 or 1.0
-    reach = np.array([half, half * _HEIGHT / _WIDTH]) if _WIDTH > _HEIGHT else np.array([half, half])
-    return center - reach, center + reach
-
-
-def _polygons(graph: ContactStateGraph, state: ContactState) -> Iterator[tuple[np.ndarray, str]]:
-    """The bodies at one sample of a state, in a drawing's coordinates (y down), with their colours."""
-    q = state.samples[0]
-    low, high = _window(graph)
-    scale = min(_WIDTH / (high[0] - low[0]), _HEIGHT / (high[1] - low[1]))
-    pose = Pose.from_xy_theta(q[:2], float(q[2]))
-    bodies: list[tuple[AssemblyBody, Pose | None]] = [(body, None) for body in graph.assembly.fixed]
-    for body, moved in [*bodies, (graph.assembly.moving, pose)]:
-        vertices = np.asarray(body.polygon)
-        for each in (body.pose, moved):
-            vertices = vertices if each is None else each.points(vertices)
-        drawn = (vertices - low) * scale
-        yield np.column_stack([drawn[:, 0], _HEIGHT - drawn[:, 1]]), _FIXED if moved is None else _MOVING

@@ -17,11 +17,12 @@ from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.geometry.input_files import input_files
 from fixture_design.grasp.result import Grasp, GraspResult
 from fixture_design.io import read_graph, read_layout
-from fixture_design.io.documents import read_document
+from fixture_design.io.graph_file import is_graph
 from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.graph_page import graph_page
 from fixture_design.viewing.graph_picture import graph_png
+from fixture_design.viewing.graph_scene import graph_scene
 from fixture_design.viewing.report import refuse_inputs
 from fixture_design.viewing.scene import Scene, scene_of
 from fixture_design.viewing.scene_page import scene_page
@@ -38,7 +39,7 @@ class Preview:
     Attributes:
         shown: the scene of a layout, or a graph of contact states.
         inputs: files it was made of, which are not overwritten.
-        planar: whether the scene lies in a plane.
+        planar: whether the scene or the graph lies in a plane.
     """
 
     shown: Scene | ContactStateGraph
@@ -48,9 +49,9 @@ class Preview:
     @property
     def html(self) -> str:
         """The page, which loads nothing."""
-        return (
-            graph_page(self.shown) if isinstance(self.shown, ContactStateGraph) else scene_page(self.shown, self.planar)
-        )
+        if not isinstance(self.shown, ContactStateGraph):
+            return scene_page(self.shown, self.planar)
+        return graph_page(self.shown) if self.planar else scene_page(graph_scene(self.shown))
 
     def picture(self, width: int = 1280, height: int = 860) -> bytes:
         """A PNG; a graph has the size it needs.
@@ -85,7 +86,7 @@ def preview(
     verdict: Verdict | None = None,
     show: str | None = None,
 ) -> Preview:
-    """A preview of a layout, of what `design` or `grasp` found, of a contact-state graph in the plane, or of a file.
+    """A preview of a layout, of what `design` or `grasp` found, of a contact-state graph, or of a file.
 
     Args:
         verdict: of the layout, where it is known already; else it is verified.
@@ -93,16 +94,14 @@ def preview(
 
     Raises:
         InputError: the file or the layout cannot be used; a search that found nothing.
-        UnsupportedError: a graph in space.
         UnknownNameError: ``show`` is no answer that has something to see.
     """
     if isinstance(thing, str | Path):
         path = Path(thing)
-        found = preview(read_graph(path) if _is_graph(path) else read_layout(path), verdict, show)
+        found = preview(read_graph(path) if is_graph(path) else read_layout(path), verdict, show)
         return Preview(found.shown, (path, *found.inputs), found.planar)
     if isinstance(thing, ContactStateGraph):
-        graph_page(thing)  # in space it says that it is not drawn
-        return Preview(thing)
+        return Preview(thing, planar=thing.assembly.space == "planar")
     if isinstance(thing, DesignResult):
         if thing.layout is None:
             raise InputError(f"the design has no layout to show: {thing.reason or 'none was found'}")
@@ -133,8 +132,3 @@ def _beginning(scene: Scene, show: str | None) -> Scene:
     if show not in known:
         raise UnknownNameError("answer with something to see", show, set(known))
     return replace(scene, first=[f"{story.group}:{story.claim}" for story in scene.stories].index(show))
-
-
-def _is_graph(path: Path) -> bool:
-    schema = read_document(path).values.get("schema")
-    return isinstance(schema, str) and schema.startswith("fixture_design/graph/")

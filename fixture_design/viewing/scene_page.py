@@ -118,10 +118,12 @@ def _story(scene: Scene, story: Story) -> dict[str, object]:
 def _panel(scene: Scene) -> Markup:
     """Name, verdict, an answer a line, the legend."""
     word = str(scene.satisfied or "none")
-    summary = tag("p", f"{ANSWER_SIGNS[scene.satisfied]} {SUMMARY[scene.satisfied]}", class_=f"summary {word}")
+    said = scene.summary or f"{ANSWER_SIGNS[scene.satisfied]} {SUMMARY[scene.satisfied]}"
+    summary = tag("p", said, class_=f"summary {word}")
     buttons = (("overview", "everything"), ("motion", "stop or move"), ("home", "view as at first"))
     tools = tag("div", *(tag("button", text, id=name, type="button") for name, text in buttons), class_="tools")
-    hint = tag("p", "Choose an answer to see what shows it. Drag to turn, wheel to come nearer.", class_="hint")
+    choose = "an answer to see what shows it" if scene.summary is None else "what to see"
+    hint = tag("p", f"Choose {choose}. Drag to turn, wheel to come nearer.", class_="hint")
     groups = [
         _group(name, list(members))
         for name, members in groupby(enumerate(scene.stories), key=lambda pair: pair[1].group)
@@ -136,12 +138,13 @@ def _group(name: str, members: list[tuple[int, Story]]) -> Markup:
 
 def _answer(number: int, story: Story) -> Markup:
     word = str(story.answer or "none")
-    said = "no contacts" if story.answer is None else str(story.answer)
+    said = story.said or ("no contacts" if story.answer is None else str(story.answer))
     asked = " (required)" if story.required else ""
     words = tag("span", f"{story.claim.replace('_', ' ')}: {said}{asked}", class_="claim")
     details = [tag("small", text) for text in (story.words, story.caption) if text]
+    sign = tag("b", ANSWER_SIGNS[story.answer], class_=word) if story.said is None else ""
     return tag(
-        "button", tag("b", ANSWER_SIGNS[story.answer], class_=word), words, *details, class_="answer", type="button",
+        "button", sign, words, *details, class_="answer", type="button",
         data_story=number, aria_pressed="false", title=story.words,
     )  # fmt: skip
 
@@ -153,7 +156,8 @@ def _legend(scene: Scene) -> Markup:
         for number, layer in enumerate(scene.layers)
     ]
     said = (("arrow", PUSH, "pushes that balance, to scale"), ("arrow", MOTION, "how the part moves"))
-    rows += [tag("label", tag("span", style="width: 13px"), _mark(mark, color), text) for mark, color, text in said]
+    if scene.summary is None:
+        rows += [tag("label", tag("span", style="width: 13px"), _mark(mark, color), text) for mark, color, text in said]
     return tag("div", *rows, class_="legend")
 
 

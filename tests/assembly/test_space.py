@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
 
 from fixture_design.assembly import Assembly, ContactStateGraph, rotations, state_at, state_graph
 from fixture_design.assembly.geometry_of import geometry_of
-from fixture_design.errors import UnsupportedError
 from fixture_design.io import assembly_from_data
+from tests.assembly.solids import hull
 
 FLOOR = {"box": [20, 20, 2], "pose": {"xyz": [0, 0, -1]}}
 ABOVE = {"x": [-1, 1], "y": [-1, 1], "z": [0, 2]}
@@ -19,17 +18,6 @@ ABOVE = {"x": [-1, 1], "y": [-1, 1], "z": [0, 2]}
 def spatial(moving: dict, *fixed: dict, region: dict | None = None) -> Assembly:
     data: dict = {"schema": "fixture_design/assembly/1", "space": "spatial", "moving": moving, "name": "test"}
     return assembly_from_data(data | {"fixed": list(fixed) or [FLOOR], "region": region or ABOVE}, "test.yaml")
-
-
-def written(path: Path, points: np.ndarray) -> dict:
-    """The convex hull of points as an OBJ file."""
-    hull = ConvexHull(points)
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
-    for (a, b, c), plane in zip(hull.simplices, hull.equations, strict=True):
-        outward = np.cross(points[b] - points[a], points[c] - points[a]) @ plane[:3] > 0
-        lines.append("f " + " ".join(str(k + 1) for k in ((a, b, c) if outward else (a, c, b))))
-    path.write_text("\n".join(lines) + "\n")
-    return {"mesh": str(path)}
 
 
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]]) - 0.25
@@ -61,7 +49,7 @@ def test_a_cube_on_a_plane() -> None:
 
 @pytest.mark.parametrize(("points", "counts"), [(TETRAHEDRON, (4, 6, 4)), (OCTAHEDRON, (6, 12, 8))])
 def test_polytopes_on_a_plane(tmp_path: Path, points: np.ndarray, counts: tuple[int, int, int]) -> None:
-    graph = state_graph(spatial(written(tmp_path / "part.obj", points)), samples=4)
+    graph = state_graph(spatial(hull(tmp_path / "part.obj", points)), samples=4)
     vertices, edges, faces = counts
     assert len(graph.states) == 1 + vertices + edges + faces
     assert len(graph.transitions) == (vertices + edges + faces) + 2 * edges + 2 * 3 * faces
@@ -72,7 +60,7 @@ def test_polytopes_on_a_plane(tmp_path: Path, points: np.ndarray, counts: tuple[
 def test_a_random_hull_on_a_plane(tmp_path: Path) -> None:
     points = np.random.default_rng(0).normal(size=(20, 3))
     points *= 0.7 / np.linalg.norm(points, axis=1, keepdims=True)
-    graph = state_graph(spatial(written(tmp_path / "hull.obj", points)), samples=4)
+    graph = state_graph(spatial(hull(tmp_path / "hull.obj", points)), samples=4)
     assert len(graph.states) == 1 + 20 + 54 + 36
     check(graph)
 
@@ -136,19 +124,6 @@ def test_rotations_there_and_back() -> None:
     np.testing.assert_allclose(rotations.matrices(both), product, atol=1e-12)
 
 
-def test_what_is_not_convex_is_refused(tmp_path: Path) -> None:
-    bent = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
-    lines = [f"v {x} {y} {z}" for z in (0, 1) for x, y in bent]
-    for k in range(6):
-        a, b = k + 1, (k + 1) % 6 + 1
-        lines += [f"f {a} {b} {b + 6}", f"f {a} {b + 6} {a + 6}"]
-    for a, b, c in ((1, 2, 3), (1, 3, 4), (1, 4, 5), (1, 5, 6)):
-        lines += [f"f {a} {c} {b}", f"f {a + 6} {b + 6} {c + 6}"]
-    (tmp_path / "bent.obj").write_text("\n".join(lines) + "\n")
-    with pytest.raises(UnsupportedError, match="not convex"):
-        state_graph(spatial({"mesh": str(tmp_path / "bent.obj")}))
-
-
 def test_every_two_features_are_named_apart() -> None:
     geometry = geometry_of(spatial({"box": [1, 1, 1]}, region={"x": [-20, 20], "y": [-20, 20], "z": [-4, 4]}))
     assert len(set(geometry.names)) == len(geometry.names) == 8 * 6 + 6 * 8 + 12 * 12
@@ -168,3 +143,13 @@ def test_a_cube_in_a_corner() -> None:
     graph = state_graph(spatial({"box": [1, 1, 1]}, FLOOR, *walls, region=region), samples=4)
     walls_touched = [len({contact.split(" - ")[1] for contact in state.contacts}) for state in graph.states]
     assert [walls_touched.count(k) for k in range(4)] == [1, 3 * 26, 3 * 240, 336]
+
+
+def test_distances_are_those_of_the_equations() -> None:
+    """All pairs at once, by products of features, against pair by pair; one moving part inclined, edges parallel."""
+    assembly = spatial({"box": [1, 0.8, 0.6]}, {"box": [1, 1, 1]}, region={"x": [-1, 1], "y": [-1, 1], "z": [-1, 1]})
+    geometry = geometry_of(assembly)
+    q = geometry.random(np.random.default_rng(1), 40)
+    q[:10, 3:] = [1, 0, 0, 0]
+    expected = geometry.equations(q, np.arange(len(geometry.names))[None]).distances
+    np.testing.assert_allclose(geometry.distances(q), expected, atol=1e-12)

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import networkx
@@ -170,6 +171,43 @@ def test_the_command(command: Callable, tmp_path: Path) -> None:  # noqa: F811 -
     ran = command("states", FIGURE_14, "--at", "1,-2")
     assert (ran.code, ran.out) == (2, "")
     assert "a configuration is 3 finite numbers" in ran.err
+
+
+def test_a_path_by_the_command(graph: ContactStateGraph, command: Callable, tmp_path: Path) -> None:  # noqa: F811
+    """From a graph that was found before: in words, as JSON, and to a state that there is not."""
+    file = tmp_path / "graph.json"
+    write_graph(graph, file)
+    expected = state_path(read_graph(file), "N1", "N20")
+    assert expected is not None
+    ran = command("states", file, "--path", "N1", "N20")
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.splitlines()[0] == " - ".join(expected.states)
+    assert "; ".join(graph.state("N20").contacts) in ran.out
+    assert ran.out.count(" at ") + ran.out.count(" to ") == len(expected.waypoints)
+    data = json.loads(command("states", file, "--path", "N1", "N20", "--json").out)
+    assert data["states"] == list(expected.states)
+    assert [place["state"] for place in data["waypoints"]] == [place.state for place in expected.waypoints]
+    ran = command("states", file, "--path", "N1", "N99")
+    assert (ran.code, ran.out) == (2, "")
+    assert "no state is called 'N99'" in ran.err
+
+
+def test_no_path_to_a_state_that_nothing_leads_to(graph: ContactStateGraph, command: Callable, tmp_path: Path) -> None:  # noqa: F811
+    write_graph(replace(graph, transitions=()), tmp_path / "graph.json")
+    ran = command("states", tmp_path / "graph.json", "--path", "N1", "N20")
+    assert (ran.code, ran.out) == (1, "no path from N1 to N20 was found\n")
+
+
+def test_control_sets_by_the_command(graph: ContactStateGraph, command: Callable, tmp_path: Path) -> None:  # noqa: F811
+    """Every state has them: free motion has no forces, and each further contact that presses takes a direction."""
+    write_graph(graph, tmp_path / "graph.json")
+    ran = command("states", tmp_path / "graph.json", "--json")
+    data = json.loads(ran.out)
+    assert data["nodes"][0]["control"]["position_controlled"] == np.eye(3).tolist()
+    for node, state in zip(data["nodes"], graph.states, strict=True):
+        control = state_control(graph.assembly, state.samples[0])
+        assert len(node["control"]["admissible_displacements"]["cones"]) == len(list(control.displacements))
+        assert len(node["control"]["position_controlled"]) == len(control.position_controlled)
 
 
 CASES = {

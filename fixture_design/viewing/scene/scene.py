@@ -75,6 +75,7 @@ class Story:
         things: drawn while it is told.  animation: played meanwhile.
         without: layers that step aside meanwhile.
         camera: that has all of it in view.
+        said: what stands in the place of the answer's word, where the story is of something else.
     """
 
     path: str
@@ -89,6 +90,7 @@ class Story:
     animation: Animation | None = None
     without: tuple[str, ...] = ()
     camera: Camera | None = None
+    said: str | None = None
 
     @property
     def shown(self) -> bool:
@@ -130,6 +132,7 @@ class Scene:
         first: index into ``stories`` of the one to begin with; None without.
         camera: that has everything in view but what stories add.
         satisfied: as of the verdict.
+        summary: what stands in its place, where the scene is of something else than a verdict.
     """
 
     name: str
@@ -143,6 +146,7 @@ class Scene:
     satisfied: Answer | None = None
     first: int | None = None
     notes: tuple[str, ...] = ()
+    summary: str | None = None
 
     def to_view(self, points: Points3) -> Points3:
         """Points in W, shape (n, 3), as they are drawn: the part about the origin, its half diagonal 1."""

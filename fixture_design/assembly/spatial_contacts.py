@@ -1,0 +1,66 @@
+"""The contacts of a configuration in space, with the normals that a controller works with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fixture_design.arrays import Vector
+from fixture_design.assembly import rotations
+from fixture_design.assembly.polytope import Polytope
+from fixture_design.assembly.spatial import SpatialGeometry
+from fixture_design.contacts import Contact
+from fixture_design.contacts.polyhedral import polyhedral_clauses
+from fixture_design.errors import AssemblyError
+from fixture_design.tolerances import TOUCHING
+
+
+def spatial_contacts(geometry: SpatialGeometry, configuration: Vector) -> tuple[Contact, ...]:
+    """The contacts of a configuration, points from the moving body's origin, fixed axes.
+
+    An apex within a facet, and an edge across an edge within both, have the one normal of their pair. Where an apex is
+    on a rim, or a crossing at an end, all pairs in one point are one contact, with the clauses of the tangent cones of
+    both bodies there.
+
+    Raises:
+        AssemblyError: the parts overlap there.
+    """
+    q = configuration[None]
+    near = TOUCHING * geometry.size
+    if geometry.overlap(q)[0] > near:
+        raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
+    touching = np.flatnonzero(geometry.distances(q)[0] <= near)
+    if not touching.size:
+        return ()
+    found = geometry.equations(q, touching[None]).face_vectors[0, :, :3]
+    arms = geometry.arms(q, touching[None])[0]
+    at_ends = geometry.at_apices(q, near)[0, touching]
+    contacts = [
+        Contact.on_facet(geometry.names[pair], "locator", arm, normal)
+        for pair, arm, normal, at_end in zip(touching, arms, found, at_ends, strict=True)
+        if not at_end
+    ]
+    for pair, arm in zip(touching[at_ends], arms[at_ends], strict=True):
+        if all(np.linalg.norm(contact.point - arm) > near for contact in contacts):
+            clauses = _clauses(geometry, q, arm, near)
+            if clauses is None:
+                raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
+            if clauses:
+                contacts.append(Contact(geometry.names[pair], "locator", arm, clauses))
+    return tuple(contacts)
+
+
+def _clauses(geometry: SpatialGeometry, q: np.ndarray, arm: np.ndarray, near: float) -> tuple | None:
+    R, position = rotations.matrices(q[:, 3:])[0], q[0, :3]
+    mine = [piece @ R.T for piece in _cones(geometry.moving.pieces, arm @ R, near)]
+    theirs = [piece for body in geometry.fixed for piece in _cones(body.pieces, position + arm, near)]
+    return polyhedral_clauses([list(piece) for piece in mine], [list(piece) for piece in theirs])
+
+
+def _cones(pieces: tuple[Polytope, ...], point: np.ndarray, near: float) -> list[np.ndarray]:
+    """The tangent cones at a point of the pieces that have it, each by its outward normals."""
+    heights = [piece.normals @ point - piece.offsets for piece in pieces]
+    return [
+        piece.normals[np.abs(height) <= near]
+        for piece, height in zip(pieces, heights, strict=True)
+        if height.max() <= near
+    ]
