@@ -36,8 +36,8 @@ from fixture_design.simulation.belief import Belief
 from fixture_design.simulation.trials import Maker
 from tests.simulation.peg import classifier_of, peg_graph
 
-#: Start errors of the insertions; all rows of the table get the same ones.
-SEED = 7
+#: Of start errors that no constant of the controller was chosen on; all rows of the table get the same ones.
+SEED = 101
 
 
 @dataclass(eq=False)
