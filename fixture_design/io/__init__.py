@@ -68,8 +68,8 @@ __all__ = [
     "write_graph",
     "write_graphml",
     "write_layout",
-    "write_new_layout",
     "write_log",
+    "write_new_layout",
     "write_urdf",
 ]
 
