@@ -42,7 +42,6 @@ class Session:
         assert self.live.address is not None
         page.events.clear()
         page.open(self.live.address, f"{TEXTS}.includes('quit')")
-        page.click(".dg.main > .close-button")
 
     def texts(self) -> list[str]:
         return self.page.run(TEXTS)
