@@ -87,7 +87,7 @@ def _by_double_description(rows: Rows) -> tuple[np.ndarray, float] | None:
 
 
 def _by_qhull(rows: Rows, sizes: Vector) -> tuple[np.ndarray, float] | None:
-    """The same by Qhull, of as many rows as the nearest facet takes; where it cannot tell facets apart, of joggled ones.
+    """The same by Qhull, of the rows that the nearest facet takes; of joggled ones where it cannot tell facets apart.
 
     Args:
         sizes: what the coordinates of rows were divided by.

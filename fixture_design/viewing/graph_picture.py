@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fixture_design.assembly import AssemblyBody, ContactState, ContactStateGraph
+from fixture_design.assembly import ContactState, ContactStateGraph
 from fixture_design.errors import UnsupportedError
 from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Pose
@@ -21,10 +21,17 @@ _WIDTH, _HEIGHT, _GAP, _ROW_GAP, _TEXT = 120.0, 90.0, 16.0, 60.0, 10.0
 #: States in a row, at most.
 _IN_A_ROW = 12
 
+#: Size of what a drawing shows for that of what moves in it [-].
+_ROOM = 1.15
+
+#: What the frame of some states says.
+COINCIDENT = "two corners in one point"
+
 #: Units of the drawing in an inch of a PNG.
 _DOTS = 100.0
 
 _FIXED, _MOVING, _EDGE, _LINE = "#d5d0c8", "#1b6ca8", "#8a8580", "#9aa5ae"
+MARKED = "#c1440e"
 
 
 def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
@@ -128,6 +135,8 @@ def graph_png(graph: ContactStateGraph) -> bytes:
             axes.add_patch(shape)
             shape.set_clip_path(frame)
         axes.text(place[0] + _WIDTH / 2, place[1] + _HEIGHT + _TEXT, state.id, ha="center", fontsize=_TEXT * 0.7)
+    if any(state.coincident for state in graph.states):
+        axes.text(_GAP, height - _TEXT, f"orange frame: {COINCIDENT}", color=MARKED, fontsize=_TEXT * 0.7)
     file = BytesIO()
     FigureCanvasAgg(figure).print_png(file)
     return file.getvalue()
@@ -135,7 +144,7 @@ def graph_png(graph: ContactStateGraph) -> bytes:
 
 def _frame(state: ContactState) -> str:
     """States with two apices in one point stand out."""
-    return "#c1440e" if state.coincident else _EDGE
+    return MARKED if state.coincident else _EDGE
 
 
 def _require_planar(graph: ContactStateGraph) -> None:
@@ -150,24 +159,29 @@ def _paper(places: dict[str, tuple[float, float]]) -> tuple[float, float]:
 
 
 def _window(graph: ContactStateGraph) -> tuple[np.ndarray, np.ndarray]:
-    """What all drawings show: where samples are, widened to the drawing's shape and by half."""
-    positions = np.vstack([state.samples[:, :2] for state in graph.states if state.contacts] or [[[0.0, 0.0]]])
-    center = (positions.min(axis=0) + positions.max(axis=0)) / 2
-    half = float(np.ptp(positions, axis=0).max()) * 0.75 or 1.0
-    reach = np.array([half, half * _HEIGHT / _WIDTH]) if _WIDTH > _HEIGHT else np.array([half, half])
-    return center - reach, center + reach
+    """What all drawings show: the moving body wherever a drawing has it, with some room, in the drawing's shape."""
+    corners = np.vstack([_moved(graph, state) for state in graph.states])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    unit = float(((high - low) / [_WIDTH, _HEIGHT]).max()) * _ROOM
+    reach = unit * np.array([_WIDTH, _HEIGHT]) / 2
+    return (low + high) / 2 - reach, (low + high) / 2 + reach
+
+
+def _moved(graph: ContactStateGraph, state: ContactState) -> np.ndarray:
+    """Corners of the moving body at the sample of a state that is drawn."""
+    q, body = state.samples[0], graph.assembly.moving
+    vertices = np.asarray(body.polygon)
+    for pose in filter(None, (body.pose, Pose.from_xy_theta(q[:2], float(q[2])))):
+        vertices = pose.points(vertices)
+    return vertices
 
 
 def _polygons(graph: ContactStateGraph, state: ContactState) -> Iterator[tuple[np.ndarray, str]]:
     """The bodies at one sample of a state, in a drawing's coordinates (y down), with their colours."""
-    q = state.samples[0]
     low, high = _window(graph)
-    scale = min(_WIDTH / (high[0] - low[0]), _HEIGHT / (high[1] - low[1]))
-    pose = Pose.from_xy_theta(q[:2], float(q[2]))
-    bodies: list[tuple[AssemblyBody, Pose | None]] = [(body, None) for body in graph.assembly.fixed]
-    for body, moved in [*bodies, (graph.assembly.moving, pose)]:
-        vertices = np.asarray(body.polygon)
-        for each in (body.pose, moved):
-            vertices = vertices if each is None else each.points(vertices)
+    scale = _WIDTH / (high[0] - low[0])
+    fixed = [(np.asarray(each.polygon), each.pose) for each in graph.assembly.fixed]
+    placed = [(vertices if pose is None else pose.points(vertices), _FIXED) for vertices, pose in fixed]
+    for vertices, fill in [*placed, (_moved(graph, state), _MOVING)]:
         drawn = (vertices - low) * scale
-        yield np.column_stack([drawn[:, 0], _HEIGHT - drawn[:, 1]]), _FIXED if moved is None else _MOVING
+        yield np.column_stack([drawn[:, 0], _HEIGHT - drawn[:, 1]]), fill

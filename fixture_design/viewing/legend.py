@@ -8,14 +8,17 @@ from fixture_design.viewing.markup import Markup, tag
 from fixture_design.viewing.palette import MOTION, PUSH
 from fixture_design.viewing.scene import Scene, Story
 
+#: What stories add: mark, colour and words.
+PUSHES, MOVES = ("arrow", PUSH, "pushes that balance, to scale"), ("arrow", MOTION, "how the part moves")
+
 
 def story_rows(stories: Iterable[Story]) -> Iterator[tuple[str, str, str]]:
-    """Mark, colour and words of what stories add: only what some of them has."""
+    """Those that some of the stories have."""
     told = list(stories)
     if any("/push/" in thing.path for story in told for thing in story.things):
-        yield "arrow", PUSH, "pushes that balance, to scale"
-    if any(thing.color == MOTION for story in told for thing in story.things) or any(s.animation for s in told):
-        yield "arrow", MOTION, "how the part moves"
+        yield PUSHES
+    if any(story.animation or any(thing.color == MOTION for thing in story.things) for story in told):
+        yield MOVES
 
 
 def picture_rows(scene: Scene, story: Story | None) -> Iterator[tuple[str, str, str]]:

@@ -33,7 +33,7 @@ function texts() {
 
 // the camera is placed for a picture of one shape: where the page is narrower it looks wider
 function fit() {
-  const pane = byId("view"), zoom = Math.min(1, pane.clientWidth / pane.clientHeight / ASPECT);
+  const pane = byId("stage"), zoom = Math.min(1, pane.clientWidth / pane.clientHeight / ASPECT);
   if (Math.abs(viewer.camera.zoom - zoom) > 1e-6) {
     viewer.camera.zoom = zoom;
     viewer.camera.updateProjectionMatrix();
@@ -65,7 +65,7 @@ function frame() {
   viewer.animator.update();
   if (viewer.needs_render) viewer.render();
   const found = texts(), camera = viewer.camera.matrixWorld.elements.concat(viewer.camera.projectionMatrix.elements);
-  const seen = JSON.stringify([found, camera, byId("view").clientWidth, byId("view").clientHeight]);
+  const seen = JSON.stringify([found, camera, byId("stage").clientWidth, byId("stage").clientHeight]);
   if (seen === lastSeen) return;
   lastSeen = seen;
   write(found.filter((label) => label.number !== "said"));

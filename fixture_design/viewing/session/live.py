@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fixture_design.errors import InputError
-from fixture_design.layout import Answer, Verdict
+from fixture_design.layout import Verdict
 from fixture_design.viewing.drake_meshcat import SAID, draw, started
 from fixture_design.viewing.palette import BLACK, MOTION
 from fixture_design.viewing.scene import Arrow, Camera, Label, Scene, Solid, Sphere, Story, Thing, scene_of, solid_of
 from fixture_design.viewing.scene.space import lifted
+from fixture_design.viewing.scene.stories import foremost
 from fixture_design.viewing.session.lines import Line, element_line, verdict_lines, wrapped
 from fixture_design.viewing.session.page import Server, session_page
 from fixture_design.viewing.session.panel import Panel, Reading
@@ -118,7 +119,7 @@ class Live:
     def _redraw(self) -> None:
         steering = self.steering
         self._seen = steering.version
-        told = steering.told if _known(steering.told, steering.verdict) else foremost(steering.verdict)
+        told = steering.told if _known(steering.told, steering.verdict) else _foremost(steering.verdict)
         tell = set() if told is None else {told}
         scene = scene_of(steering.layout, steering.verdict, self._solid, tell, self._camera)
         story = next((each for each in scene.stories if (each.group, each.claim) == told), None)
@@ -185,18 +186,17 @@ def _opened(server: Server) -> Meshcat:
         raise InputError(f"the session cannot listen on any port: {cause}", expected="a port that is free") from cause
 
 
-def foremost(verdict: Verdict) -> tuple[str, str] | None:
-    """(group, claim) of the answer that matters most: what is required and fails, then what is required and undecided,
-    then what carries the loads, then whether everything is held. None without contacts.
-    """
-    for answer in (Answer.NO, Answer.UNDECIDED):
-        for each in verdict.requirements:
-            if each.answer is answer:
-                return each.group, each.require
-    groups = [group for group in verdict.groups.values() if group.contacts]
-    carrying = [(group.name, "holds_loads") for group in groups if "holds_loads" in group.findings]
-    closing = [(group.name, "form_closure") for group in groups if group.name == "all"]
-    return next(iter([*carrying, *closing]), None)
+def _foremost(verdict: Verdict) -> tuple[str, str] | None:
+    """(group, claim) of the answer that matters most, of groups with contacts; None without any."""
+    required = {(each.group, each.require) for each in verdict.requirements}
+    answers = [
+        (claim, group.name, finding.answer, (group.name, claim) in required)
+        for group in verdict.groups.values()
+        if group.contacts
+        for claim, finding in group.findings.items()
+    ]
+    number = foremost(answers)
+    return None if number is None else (answers[number][1], answers[number][0])
 
 
 def _known(told: tuple[str, str] | None, verdict: Verdict) -> bool:

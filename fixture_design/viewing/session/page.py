@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
-from fixture_design.viewing.legend import legend_mark, picture_rows, story_rows
+from fixture_design.viewing.legend import MOVES, PUSHES, legend_mark, picture_rows
 from fixture_design.viewing.markup import Markup, tag
 from fixture_design.viewing.page_files import page_file
 from fixture_design.viewing.scene import Scene
@@ -47,13 +47,13 @@ def session_page(scene: Scene, socket: int) -> str:
         Markup('<link rel="icon" href="data:,">'),
         tag("style", Markup(page_file("session.css"))), tag("script", src=VIEWER),
     )  # fmt: skip
-    view = tag(
+    stage = tag(
         "div", tag("div", id="meshcat-pane"), tag("canvas", id="names"), tag("div", id="said"),
-        tag("div", "The session has ended.", id="ended"), id="view",
+        tag("div", "The session has ended.", id="ended"), id="stage",
     )  # fmt: skip
-    rows = dict.fromkeys([*picture_rows(scene, None), *story_rows(scene.stories)])
+    rows = [*picture_rows(scene, None), PUSHES, MOVES]
     legend = tag("div", *(tag("div", legend_mark(mark, color), text) for mark, color, text in rows), class_="legend")
-    panel = tag("div", tag("div", id="controls"), legend, id="panel")
+    view, panel = tag("div", stage, legend, id="view"), tag("div", tag("div", id="controls"), id="panel")
     script = tag("script", Markup(page_file("session.js")))
     body = tag("body", view, panel, script, data_port=socket, data_aspect=ASPECT)
     return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
