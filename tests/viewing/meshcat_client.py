@@ -28,6 +28,8 @@ class Client:
     def __init__(self, address: str) -> None:
         self._loop = asyncio.new_event_loop()
         self._socket = self._loop.run_until_complete(self._connect(socket_of(address)))
+        #: Of the session, for those that started it.
+        self.process = 0
         #: Names of the buttons there are, and values of the sliders.
         self.buttons: list[str] = []
         self.sliders: dict[str, float] = {}
