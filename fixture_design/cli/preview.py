@@ -33,12 +33,12 @@ def preview(
 
     if out is None and png is None:
         out = Path(f"{file.name.split('.')[0]}.html")
+    if png is not None and png.suffix.lower() != ".png":
+        raise InputError("pictures are PNG", source=png, expected="a name with .png")
     try:
         shown = preview_of(file, show=show)
     except InputError as error:
         raise error.within(file) from error
     for path in filter(None, (out, png)):
-        if path is png and path.suffix.lower() != ".png":
-            raise InputError("pictures are PNG", source=path, expected="a name with .png")
         shown.save(path)
         typer.echo(printable(str(path)))

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fixture_design.layout import Pose
 from fixture_design.viewing.palette import GROUND, rgb
-from fixture_design.viewing.scene import Label, Lines, Scene, Story, Thing, changed_paths, triangles_of
-from fixture_design.viewing.scene.shapes import Points3
+from fixture_design.viewing.scene import Label, Lines, Scene, Sphere, Story, Thing, changed_paths, triangles_of
 
 if TYPE_CHECKING:
     from pydrake.geometry import Meshcat
@@ -18,8 +16,11 @@ if TYPE_CHECKING:
 #: Where everything is, below Drake's own root.
 ROOT = "scene"
 
-#: Height of letters in half diagonals of the part, and width of thin lines [pixels].
-_LETTERS, _THIN = 0.055, 1.5
+#: Below that, names at their points; the path of a label that is said rather than written somewhere.
+LABELS, SAID = "labels", "said"
+
+#: Width of thin lines [pixels].
+_THIN = 1.5
 
 
 def started(port: int | None = None) -> Meshcat:
@@ -54,7 +55,7 @@ def draw(
     board: Any = meshcat
     story = story or (None if scene.first is None else scene.stories[scene.first])
     things, labels = scene.told(story)
-    things = (*things, *(_written(scene, label, number) for number, label in enumerate(labels) if label.text.strip()))
+    things = (*things, *(_written(label, number) for number, label in enumerate(labels) if label.text.strip()))
     if before is None:
         board.Delete(ROOT)
         camera = scene.camera if story is None or story.camera is None else story.camera
@@ -75,9 +76,13 @@ def draw(
 
 def _draw(board: Any, scene: Scene, thing: Thing) -> None:
     from pydrake.geometry import Rgba  # noqa: PLC0415 - as above
+    from pydrake.math import RigidTransform  # noqa: PLC0415 - as above
 
     color = Rgba(*rgb(thing.color), thing.opacity)
     path = f"{ROOT}/{thing.path}"
+    if thing.path.startswith(LABELS + "/") and isinstance(thing.shape, Sphere):
+        board.SetTransform(path, RigidTransform(scene.to_view(thing.shape.center[None])[0]))
+        return
     if isinstance(thing.shape, Lines):
         ends = scene.to_view(thing.shape.segments.reshape(-1, 3)).reshape(-1, 2, 3)
         board.SetLineSegments(path, ends[:, 0].T, ends[:, 1].T, _THIN, color)
@@ -86,37 +91,12 @@ def _draw(board: Any, scene: Scene, thing: Thing) -> None:
     board.SetTriangleMesh(path, scene.to_view(mesh.vertices).T, mesh.triangles.T.astype(np.int32), color)
 
 
-def _written(scene: Scene, label: Label, number: int) -> Thing:
-    """Letters as outlines that face the camera, which are things as others: this Meshcat has no text."""
-    starts, ends = _outline(scene, label)
-    return Thing(f"labels/{number}", Lines(scene.center + scene.size * np.stack([starts, ends], axis=1)), label.color)
-
-
-def _outline(scene: Scene, label: Label) -> tuple[Points3, Points3]:
-    """Ends of the letters' outlines in the coordinates of the view, centred on the label's point."""
-    polygons = _letters(label.text)
-    if not polygons:
-        return np.zeros((0, 3)), np.zeros((0, 3))
-    camera = scene.camera
-    away = (camera.eye - camera.target) / np.linalg.norm(camera.eye - camera.target)
-    right = np.cross(camera.up, away)
-    right /= np.linalg.norm(right)
-    at = scene.to_view(label.point[None])[0]
-    placed = [at + each @ np.array([right, np.cross(away, right)]) for each in polygons]
-    return np.vstack([each[:-1] for each in placed]), np.vstack([each[1:] for each in placed])
-
-
-@lru_cache(maxsize=1024)
-def _letters(text: str) -> tuple[np.ndarray, ...]:
-    """The outlines of words, each of shape (n, 2), about their middle."""
-    from matplotlib.textpath import TextPath  # noqa: PLC0415 - a third of a second
-
-    polygons = [np.asarray(each) for each in TextPath((0, 0), text, size=_LETTERS, usetex=False).to_polygons()]
-    if not polygons:
-        return ()
-    everything = np.vstack(polygons)
-    middle = (everything.min(axis=0) + everything.max(axis=0)) / 2
-    return tuple(each - middle for each in polygons)
+def _written(label: Label, number: int) -> Thing:
+    """A name, which this Meshcat cannot write: the session's page reads it from the path of a point."""
+    where = SAID if label.path == SAID else str(number)
+    return Thing(
+        f"{LABELS}/{where}/{label.color[1:]}-{label.text.encode().hex()}", Sphere(label.point, 0.0), label.color
+    )
 
 
 def _play(board: Any, scene: Scene, story: Story | None) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.assembly import AssemblyBody, ContactState, ContactStateGraph, rotations
+from fixture_design.assembly import ContactState, ContactStateGraph, rotations
 from fixture_design.layout import Pose
 from fixture_design.viewing.graph_solids import DrawnBody, drawn
 
@@ -16,8 +16,8 @@ _FIXED, _MOVING = "#d5d0c8", "#1b6ca8"
 #: How much an outline covers: in space the fixed bodies are in front of the moving one as well.
 _OPACITY, _BEHIND, _IN_FRONT = 0.75, 0.9, 0.25
 
-#: How much more than where the moving body's origin comes is shown [-].
-_AROUND = 0.75
+#: How much more than where the moving body comes is shown [-].
+_ROOM = 1.15
 
 #: Where drawings in space are looked at from: along x less than along y, from above.
 _EYE = np.array([0.45, -0.75, 0.5])
@@ -55,11 +55,10 @@ class _Window:
 
     @classmethod
     def around(cls, points: np.ndarray, width: float, height: float) -> _Window:
-        """Where points (n, 2) are, widened by half and to the drawing's shape."""
+        """Where points (n, 2) are, with some room, in the drawing's shape."""
         center = (points.min(axis=0) + points.max(axis=0)) / 2
-        half = float(np.ptp(points, axis=0).max()) * _AROUND or 1.0
-        reach = np.array([half, half * height / width]) if width > height else np.array([half, half])
-        return cls(center - reach, min(width, height) / (2 * float(reach.min())), height)
+        unit = float((np.ptp(points, axis=0) / [width, height]).max()) * _ROOM
+        return cls(center - unit * np.array([width, height]) / 2, 1 / unit, height)
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         seen = (points - self.low) * self.scale
@@ -71,18 +70,22 @@ class _Flat:
 
     def __init__(self, graph: ContactStateGraph, width: float, height: float) -> None:
         self.assembly = graph.assembly
-        positions = [state.samples[:, :2] for state in graph.states if state.contacts] or [np.zeros((1, 2))]
-        self.window = _Window.around(np.vstack(positions), width, height)
+        self.window = _Window.around(np.vstack([self._moved(state) for state in graph.states]), width, height)
 
     def __call__(self, state: ContactState) -> Iterator[Outline]:
-        q = state.samples[0]
-        pose = Pose.from_xy_theta(q[:2], float(q[2]))
-        bodies: list[tuple[AssemblyBody, Pose | None]] = [(body, None) for body in self.assembly.fixed]
-        for body, moved in [*bodies, (self.assembly.moving, pose)]:
+        for body in self.assembly.fixed:
             vertices = np.asarray(body.polygon)
-            for each in (body.pose, moved):
-                vertices = vertices if each is None else each.points(vertices)
-            yield Outline((self.window(vertices),), _FIXED if moved is None else _MOVING, _OPACITY)
+            placed = vertices if body.pose is None else body.pose.points(vertices)
+            yield Outline((self.window(placed),), _FIXED, _OPACITY)
+        yield Outline((self.window(self._moved(state)),), _MOVING, _OPACITY)
+
+    def _moved(self, state: ContactState) -> np.ndarray:
+        """Corners of the moving body at the sample that is drawn."""
+        q, body = state.samples[0], self.assembly.moving
+        vertices = np.asarray(body.polygon)
+        for pose in filter(None, (body.pose, Pose.from_xy_theta(q[:2], float(q[2])))):
+            vertices = pose.points(vertices)
+        return vertices
 
 
 class _Solid:

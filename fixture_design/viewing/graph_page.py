@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from fixture_design.assembly import ContactStateGraph
-from fixture_design.viewing.graph_picture import graph_picture
+from fixture_design.viewing.graph_picture import COINCIDENT, MARKED, graph_picture
 from fixture_design.viewing.markup import Markup, table, tag
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 _STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 1.5rem; color: #1c1f23; } h1 { font-size: 20px; margin: 0; }
-.graph { overflow: auto; border: 1px solid #d5d8dc; margin: 1rem 0; } table { border-collapse: collapse; }
+.graph svg { max-width: 100%; height: auto; }
+.graph { border: 1px solid #d5d8dc; margin: 1rem 0; }
+table { border-collapse: collapse; }
 th, td { text-align: left; padding: .15rem .8rem .15rem 0; border-bottom: 1px solid #e4e4e4; }
 """
 
@@ -23,9 +25,11 @@ def graph_page(graph: ContactStateGraph) -> str:
     )  # fmt: skip
     complete = "" if graph.complete else "; the search was interrupted, there may be more"
     said = f"{len(graph.states)} contact states, {len(graph.transitions)} direct transitions{complete}."
+    marked = any(state.coincident for state in graph.states)
+    frame = tag("p", tag("b", "Orange frame", style=f"color: {MARKED}"), f": {COINCIDENT}.") if marked else ""
     rows = [[state.id, "; ".join(state.contacts) or "no contact"] for state in graph.states]
     body = tag(
-        "body", tag("h1", graph.assembly.name), tag("p", said), tag("div", graph_picture(graph), class_="graph"),
+        "body", tag("h1", graph.assembly.name), tag("p", said), frame, tag("div", graph_picture(graph), class_="graph"),
         table(["state", "contacts"], rows),
     )  # fmt: skip
     return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"

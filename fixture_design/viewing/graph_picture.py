@@ -20,10 +20,17 @@ _WIDTH, _HEIGHT, _GAP, _ROW_GAP, _TEXT = 120.0, 90.0, 16.0, 60.0, 10.0
 #: States in a row, at most.
 _IN_A_ROW = 12
 
+#: Size of what a drawing shows for that of what moves in it [-].
+_ROOM = 1.15
+
+#: What the frame of some states says.
+COINCIDENT = "two corners in one point"
+
 #: Units of the drawing in an inch of a PNG.
 _DOTS = 100.0
 
 _EDGE, _LINE = "#8a8580", "#9aa5ae"
+MARKED = "#c1440e"
 
 
 def write_graph_picture(graph: ContactStateGraph, path: str | Path) -> None:
@@ -128,6 +135,8 @@ def graph_png(graph: ContactStateGraph) -> bytes:
             axes.add_patch(shape)
             shape.set_clip_path(frame)
         axes.text(place[0] + _WIDTH / 2, place[1] + _HEIGHT + _TEXT, state.id, ha="center", fontsize=_TEXT * 0.7)
+    if any(state.coincident for state in graph.states):
+        axes.text(_GAP, height - _TEXT, f"orange frame: {COINCIDENT}", color=MARKED, fontsize=_TEXT * 0.7)
     file = BytesIO()
     FigureCanvasAgg(figure).print_png(file)
     return file.getvalue()
@@ -135,7 +144,7 @@ def graph_png(graph: ContactStateGraph) -> bytes:
 
 def _frame(state: ContactState) -> str:
     """States with two apices in one point stand out."""
-    return "#c1440e" if state.coincident else _EDGE
+    return MARKED if state.coincident else _EDGE
 
 
 def _paper(places: dict[str, tuple[float, float]]) -> tuple[float, float]:

@@ -26,6 +26,16 @@ ANSWER_COLORS: dict[Answer | None, str] = {
 ANSWER_SIGNS: dict[Answer | None, str] = {Answer.YES: "✓", Answer.NO: "✗", Answer.UNDECIDED: "?", None: "-"}
 
 
+def answer_sign(answer: Answer | None, required: bool) -> str:
+    """The sign of an answer that somebody asked for; a middle dot for others, which are neither good nor bad."""
+    return ANSWER_SIGNS[answer] if required else "·"
+
+
+def answer_color(answer: Answer | None, required: bool) -> str:
+    """Its colour, grey for what nobody asked for."""
+    return ANSWER_COLORS[answer if required else None]
+
+
 def rgb(color: str) -> tuple[float, float, float]:
     """ "#e69f00" as red, green and blue from 0 to 1."""
     red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))

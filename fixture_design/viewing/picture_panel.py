@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fixture_design.viewing.palette import ANSWER_COLORS, ANSWER_SIGNS, MOTION, PUSH
+from fixture_design.viewing.legend import picture_rows
+from fixture_design.viewing.palette import ANSWER_COLORS, ANSWER_SIGNS, MOTION, answer_color, answer_sign
 from fixture_design.viewing.scene import Scene, Story
 from fixture_design.viewing.summary import SUMMARY
 
@@ -39,7 +39,7 @@ def draw_panel(draw: Any, scene: Scene, told: Story | None, box: tuple[int, int,
     draw.rectangle(box, fill=_BACK)
     draw.line([(left, top), (left, bottom)], fill=_RULE)
     pen = _Pen(draw, left + _ROOM * scale, right - left - 2 * _ROOM * scale, scale, top + _ROOM * scale)
-    rows = list(legend_rows(scene))
+    rows = list(picture_rows(scene, told))
     below = bottom - (len(rows) + 1.5) * pen.step(_SMALL)
     pen.words(scene.name, _TITLE, _INK, bold=True, most=2)
     pen.words(
@@ -52,13 +52,6 @@ def draw_panel(draw: Any, scene: Scene, told: Story | None, box: tuple[int, int,
     for mark, color, text in rows:
         _mark(pen, mark, color)
         pen.words(text, _SMALL, _INK, indent=24.0, most=1)
-
-
-def legend_rows(scene: Scene) -> Iterator[tuple[str, str, str]]:
-    """Mark, colour and words of the legend."""
-    yield from ((layer.mark, layer.color, layer.text) for layer in scene.layers)
-    yield "arrow", PUSH, "pushes that balance, to scale"
-    yield "arrow", MOTION, "how the part moves"
 
 
 @dataclass
@@ -133,7 +126,8 @@ def _answer(pen: _Pen, story: Story, *, told: bool) -> None:
     """One line; with the words and the caption below where it is told."""
     top = pen.y
     sign = font(_TEXT * pen.scale, True)
-    pen.draw.text((pen.left, top), ANSWER_SIGNS[story.answer], font=sign, fill=ANSWER_COLORS[story.answer])
+    mark, color = answer_sign(story.answer, story.required), answer_color(story.answer, story.required)
+    pen.draw.text((pen.left, top), mark, font=sign, fill=color)
     said = "no contacts" if story.answer is None else str(story.answer)
     asked = " (required)" if story.required else ""
     pen.words(f"{story.claim.replace('_', ' ')}: {said}{asked}", _TEXT, _INK, bold=told, indent=20.0)

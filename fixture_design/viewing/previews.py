@@ -94,13 +94,15 @@ def preview(
 
     Raises:
         InputError: the file or the layout cannot be used; a search that found nothing.
-        UnknownNameError: ``show`` is no answer that has something to see.
+        UnknownNameError: ``show`` is no answer of the verdict.
     """
     if isinstance(thing, str | Path):
         path = Path(thing)
         found = preview(read_graph(path) if is_graph(path) else read_layout(path), verdict, show)
         return Preview(found.shown, (path, *found.inputs), found.planar)
     if isinstance(thing, ContactStateGraph):
+        if show is not None:
+            raise UnknownNameError("answer of a graph of contact states, which has none", show, set())
         return Preview(thing, planar=thing.assembly.space == "planar")
     if isinstance(thing, DesignResult):
         if thing.layout is None:
@@ -128,7 +130,7 @@ def preview(
 def _beginning(scene: Scene, show: str | None) -> Scene:
     if show is None:
         return scene
-    known = [f"{story.group}:{story.claim}" for story in scene.stories if story.shown]
+    known = [f"{story.group}:{story.claim}" for story in scene.stories]
     if show not in known:
-        raise UnknownNameError("answer with something to see", show, set(known))
-    return replace(scene, first=[f"{story.group}:{story.claim}" for story in scene.stories].index(show))
+        raise UnknownNameError("answer", show, known)
+    return replace(scene, first=known.index(show))

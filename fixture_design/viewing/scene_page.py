@@ -14,19 +14,19 @@ from itertools import groupby
 import numpy as np
 
 from fixture_design.layout import Layout, Verdict
+from fixture_design.viewing.legend import legend_mark, story_rows
 from fixture_design.viewing.markup import Markup, bullets, joined, tag
 from fixture_design.viewing.meshcat_commands import commands, tracks
-from fixture_design.viewing.palette import ANSWER_SIGNS, MOTION, PUSH
+from fixture_design.viewing.page_files import page_file
+from fixture_design.viewing.palette import ANSWER_SIGNS, answer_sign
 from fixture_design.viewing.scene import Camera, Label, Scene, Story, scene_of
+from fixture_design.viewing.scene.camera import ASPECT
 from fixture_design.viewing.summary import SUMMARY
 
 _POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "base-uri 'none'; form-action 'none'"
 )
-
-#: Width for its height that the scene's camera is made for.
-_ASPECT = 1.25
 
 
 def preview_page(layout: Layout, verdict: Verdict) -> str:
@@ -47,19 +47,15 @@ def scene_page(scene: Scene, planar: bool = False) -> str:
         "head", Markup('<meta charset="utf-8">'),
         Markup(f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'),
         Markup('<meta name="viewport" content="width=device-width">'),
-        tag("title", f"{scene.name}: fixture preview"), tag("style", Markup(_file("page.css"))),
+        tag("title", f"{scene.name}: fixture preview"), tag("style", Markup(page_file("page.css"))),
     )  # fmt: skip
     data = tag("script", Markup(_json(_data(scene, planar))), type="application/json", id="scene")
-    scripts = joined([tag("script", Markup(_viewer())), data, tag("script", Markup(_file("page.js")))])
+    scripts = joined([tag("script", Markup(_viewer())), data, tag("script", Markup(page_file("page.js")))])
     view = tag(
         "div", tag("div", id="meshcat-pane"), tag("canvas", id="names"),
         tag("div", "This browser cannot draw in three dimensions (WebGL).", id="trouble"), id="view",
     )  # fmt: skip
     return "<!DOCTYPE html>\n" + tag("html", head, tag("body", view, _panel(scene), scripts), lang="en") + "\n"
-
-
-def _file(name: str) -> str:
-    return files("fixture_design.viewing").joinpath("page", name).read_text(encoding="utf-8")
 
 
 def _viewer() -> str:
@@ -87,7 +83,7 @@ def _data(scene: Scene, planar: bool) -> dict[str, object]:
         "layers": [{"path": layer.path, "number": number} for number, layer in enumerate(scene.layers)],
         "stories": [_story(scene, story) for story in scene.stories],
         "camera": _camera(scene, scene.camera),
-        "aspect": _ASPECT,
+        "aspect": ASPECT,
         "first": scene.first,
         "planar": planar,
     }
@@ -137,39 +133,28 @@ def _group(name: str, members: list[tuple[int, Story]]) -> Markup:
 
 
 def _answer(number: int, story: Story) -> Markup:
-    word = str(story.answer or "none")
+    word = str(story.answer or "none") if story.required else "none"
     said = story.said or ("no contacts" if story.answer is None else str(story.answer))
     asked = " (required)" if story.required else ""
     words = tag("span", f"{story.claim.replace('_', ' ')}: {said}{asked}", class_="claim")
     details = [tag("small", text) for text in (story.words, story.caption) if text]
-    sign = tag("b", ANSWER_SIGNS[story.answer], class_=word) if story.said is None else ""
+    sign = tag("b", answer_sign(story.answer, story.required), class_=word) if story.said is None else ""
     return tag(
-        "button", sign, words, *details, class_="answer", type="button",
-        data_story=number, aria_pressed="false", title=story.words,
+        "button", sign, words, *details,
+        class_="answer", type="button", data_story=number, aria_pressed="false", title=story.words,
     )  # fmt: skip
 
 
 def _legend(scene: Scene) -> Markup:
     """Every layer with its mark, to be switched off; what the arrows of stories are."""
     rows = [
-        tag("label", _checkbox(f"layer-{number}", not layer.hidden), _mark(layer.mark, layer.color), layer.text)
+        tag("label", _checkbox(f"layer-{number}", not layer.hidden), legend_mark(layer.mark, layer.color), layer.text)
         for number, layer in enumerate(scene.layers)
     ]
-    said = (("arrow", PUSH, "pushes that balance, to scale"), ("arrow", MOTION, "how the part moves"))
-    if scene.summary is None:
-        rows += [tag("label", tag("span", style="width: 13px"), _mark(mark, color), text) for mark, color, text in said]
+    said = story_rows(scene.stories)
+    rows += [tag("label", tag("span", style="width: 13px"), legend_mark(*row[:2]), row[2]) for row in said]
     return tag("div", *rows, class_="legend")
 
 
 def _checkbox(name: str, checked: bool) -> Markup:
     return Markup(f'<input type="checkbox" id="{name}"{" checked" if checked else ""}>')
-
-
-def _mark(mark: str, color: str) -> Markup:
-    shapes = {
-        "arrow": tag("path", d="M0 7H9V2L18 8L9 14V9H0Z", fill=color),
-        "cone": tag("path", d="M1 8L17 2V14Z", fill=color),
-        "dot": tag("circle", cx=9, cy=8, r=5, fill=color, stroke="#000"),
-    }
-    square = tag("rect", x=2, y=3, width=14, height=10, fill=color, stroke="#000")
-    return tag("svg", shapes.get(mark, square), width=18, height=16, viewBox="0 0 18 16")

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from fixture_design.analysis.bounds import bounds_of, closure_bound
 from fixture_design.analysis.hull import nearest_facet
@@ -38,6 +39,36 @@ def test_margin_of_closed_rows(dimension: int, count: int, seed: int) -> None:
     assert 0 < margin <= sampled + 1e-12
     around = unit(motion + 1e-3 * rng.normal(size=(2_000, dimension)))
     assert np.max(rows @ around.T, axis=0).min() >= margin - 1e-12
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_growing_hull_finds_the_nearest_facet_of_the_whole(seed: int) -> None:
+    """Nine friction cones of eight edges, as Qhull has all of their hull; and with rows that come twice."""
+    rng = np.random.default_rng(seed)
+    while True:
+        normals, points = unit(rng.normal(size=(9, 3))), rng.uniform(-1, 1, size=(9, 3))
+        turns = np.linspace(0, 2 * np.pi, 8, endpoint=False)
+        first = unit(np.cross(normals, [0.3, 0.5, 0.8]))
+        tangents = np.cos(turns)[:, None, None] * first + np.sin(turns)[:, None, None] * np.cross(normals, first)
+        forces = normals + 0.2 * tangents
+        rows = np.concatenate([forces, np.cross(np.broadcast_to(points, forces.shape), forces)], axis=2).reshape(-1, 6)
+        if tucker_partition(unit(rows), DEFAULT.tie).closes:
+            break
+    whole = float((-ConvexHull(rows).equations[:, -1]).min())
+    for each in (rows, np.vstack([rows, rows[:20]])):
+        found = nearest_facet(each)
+        assert found is not None
+        assert found.distance == pytest.approx(whole, rel=1e-9)
+        assert found.at_least <= found.distance
+
+
+def test_a_hull_that_begins_flat_grows_from_all_rows() -> None:
+    """The longest rows lie in a plane: what a hull would begin with has no inside."""
+    turns = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    ring = np.column_stack([np.cos(turns), np.sin(turns), np.zeros(24)])
+    found = nearest_facet(np.vstack([ring, [[0.01, 0.0, 0.5]], [[0.0, 0.01, -0.5]]]))
+    assert found is not None
+    assert found.distance == pytest.approx(0.44, abs=0.01)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -14,7 +14,9 @@ from fixture_design.cones import union_element
 from fixture_design.contacts import face_vectors
 from fixture_design.errors import AssemblyError, FileFormatError, InputError, UnknownNameError, UnsupportedError
 from fixture_design.io import json_schema, read_assembly, read_graph, write_graph, write_graphml
-from fixture_design.viewing import graph_picture, write_graph_picture
+from fixture_design.viewing import graph_picture, preview, write_graph_picture
+from fixture_design.viewing.graph_page import graph_page
+from fixture_design.viewing.graph_picture import _HEIGHT, _WIDTH, _polygons
 from tests.assembly.parts import FIGURE_14, box, planar
 from tests.cli.conftest import command  # noqa: F401 - a fixture
 from tests.problems import FIGURE_14_TABLE_5
@@ -134,6 +136,21 @@ def test_the_picture(graph: ContactStateGraph) -> None:
     assert picture.count("<title>") == len(graph.states)
     assert picture.count("<line ") == len(graph.transitions)
     assert "apex 4 - facet 7; facet 2 - apex 1" in picture
+
+
+def test_what_moves_is_seen_whole_in_every_drawing(graph: ContactStateGraph) -> None:
+    for state in graph.states:
+        *_, (moving, _) = _polygons(graph, state)
+        assert moving.min() >= 0
+        assert (moving <= [_WIDTH, _HEIGHT]).all()
+
+
+def test_the_page_explains_its_frames_and_does_not_scroll_sideways(graph: ContactStateGraph) -> None:
+    page = graph_page(graph)
+    assert ("Orange frame" in page) == any(state.coincident for state in graph.states)
+    assert "max-width: 100%" in page
+    with pytest.raises(UnknownNameError, match="nonsense"):
+        preview(graph, show="all:nonsense")
 
 
 def test_pictures_are_files(graph: ContactStateGraph, tmp_path: Path) -> None:

@@ -115,6 +115,10 @@ class Page:
     def screenshot(self) -> np.ndarray:
         return decoded(self.send("Page.captureScreenshot", format="png")["data"])
 
+    def png(self) -> bytes:
+        """What is seen, as a file."""
+        return base64.b64decode(self.send("Page.captureScreenshot", format="png")["data"])
+
     def requests(self) -> list[str]:
         """Addresses that were asked for, except the pages and data of their own."""
         sent = [event["params"] for event in self.events if event.get("method") == "Network.requestWillBeSent"]

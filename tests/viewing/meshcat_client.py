@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import time
 from typing import Any
+from urllib.request import urlopen
 
 import umsgpack
 
@@ -12,12 +14,22 @@ import umsgpack
 PATIENCE = 30.0
 
 
+def socket_of(address: str) -> str:
+    """Where the page at an address is told what it shows."""
+    with urlopen(address, timeout=PATIENCE) as page:
+        found = re.search(r'data-port="(\d+)"', page.read().decode())
+    assert found is not None
+    return f"ws://localhost:{found[1]}"
+
+
 class Client:
     """One that is connected; ``address`` as of a session: http://localhost:7000."""
 
     def __init__(self, address: str) -> None:
         self._loop = asyncio.new_event_loop()
-        self._socket = self._loop.run_until_complete(self._connect(address.replace("http", "ws", 1)))
+        self._socket = self._loop.run_until_complete(self._connect(socket_of(address)))
+        #: Of the session, for those that started it.
+        self.process = 0
         #: Names of the buttons there are, and values of the sliders.
         self.buttons: list[str] = []
         self.sliders: dict[str, float] = {}

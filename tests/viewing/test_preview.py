@@ -18,10 +18,13 @@ import umsgpack
 import fixture_design as fd
 from fixture_design import Contact, Layout
 from fixture_design.errors import FileFormatError, InputError
-from fixture_design.layout import Part, Pose
+from fixture_design.layout import Answer, Part, Pose
 from fixture_design.viewing import preview_page
+from fixture_design.viewing.legend import MOVES, PUSHES, picture_rows
 from fixture_design.viewing.meshcat_commands import draw
-from fixture_design.viewing.scene import scene_of
+from fixture_design.viewing.palette import answer_color, answer_sign
+from fixture_design.viewing.scene import Scene, scene_of
+from tests.cli.conftest import Ran
 from tests.geometry.parts import shared
 from tests.viewing.test_scene import BRACKET, URDF, looked_at
 
@@ -214,3 +217,55 @@ def test_verify_writes_the_preview_of_its_verdict(command: Callable, tmp_path: P
     ran = command("verify", free, "--html", tmp_path / "out.html")
     assert ran.code == 0
     assert "can move: along [1, 0]" in unescape((tmp_path / "out.html").read_text())
+
+
+def test_signs_and_colours_are_for_what_is_required() -> None:
+    layout = fd.read_layout(BRACKET)
+    verdict = fd.verify(layout)
+    assert verdict.satisfied is Answer.YES
+    page = preview_page(layout, verdict)
+    panel = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
+    assert "accessible: no" in panel
+    assert "✗" not in panel
+    assert panel.count("✓") == 1 + len(verdict.requirements)
+    assert answer_sign(Answer.NO, True) == "✗"
+    assert answer_color(Answer.NO, False) != answer_color(Answer.NO, True)
+    broken = replace(layout, elements=layout.elements[:-1])
+    assert "✗" in re.sub(r"<script.*?</script>", "", preview_page(broken, fd.verify(broken)), flags=re.DOTALL)
+
+
+def test_a_picture_explains_what_is_in_it() -> None:
+    scene = scene_of(layout := fd.read_layout(BRACKET), fd.verify(layout))
+    held = next(each for each in scene.stories if (each.group, each.claim) == ("all", "form_closure"))
+    free = next(each for each in scene.stories if (each.group, each.claim) == ("locators", "form_closure"))
+    assert [PUSHES in picture_rows(scene, story) for story in (held, free, None)] == [True, False, False]
+    assert [MOVES in picture_rows(scene, story) for story in (held, free, None)] == [False, True, False]
+    said = [text for _, _, text in picture_rows(scene, free)]
+    assert not any(text.startswith("clamp") for text in said)  # which step aside
+    assert any(text.startswith("clamp") for _, _, text in picture_rows(scene, held))
+
+
+def test_show_takes_every_answer_and_no_nonsense(command: Callable[..., Ran], tmp_path: Path) -> None:
+    scene = fd.preview(BRACKET, show="locators:strongly_accessible").shown
+    assert isinstance(scene, Scene)
+    assert scene.first is not None
+    layout = fd.read_layout(BRACKET)
+    without = replace(layout, elements=tuple(replace(e, preload=None) for e in layout.elements))
+    seen = fd.preview(without, show="clamped:holds_loads").shown
+    assert isinstance(seen, Scene)
+    assert seen.first is not None
+    story = seen.stories[seen.first]
+    assert (story.answer, story.shown) == (Answer.UNDECIDED, False)
+    assert "preload" in story.words
+    ran = command("preview", BRACKET, "--show", "all:nonsense", "-o", tmp_path / "x.html")
+    assert (ran.code, (tmp_path / "x.html").exists()) == (2, False)
+    ran = command("preview", BRACKET, "-o", tmp_path / "x.html", "--png", tmp_path / "x.jpg")
+    assert (ran.code, (tmp_path / "x.html").exists()) == (2, False)
+
+
+def test_a_required_answer_comes_before_an_unrequired_one() -> None:
+    """The V-block holds with friction, which is required; that it does not without is nobody's question."""
+    scene = fd.preview(URDF / "vblock" / "vblock.layout.yaml").shown
+    assert isinstance(scene, Scene)
+    assert scene.first is not None
+    assert scene.stories[scene.first].required

@@ -71,7 +71,7 @@ def scene_of(
         layers=tuple(_layers(layout, things)),
         camera=camera,
         satisfied=verdict.satisfied,
-        first=first_story(stories, verdict),
+        first=first_story(stories),
         notes=verdict.notes,
     )
 

@@ -13,7 +13,7 @@ from fixture_design.viewing.scene.shapes import Points3, Vector3
 from fixture_design.viewing.scene.space import lifted
 
 #: Height of the view [rad], width for its height, and how much of it is left free [-].
-_FOV, _ASPECT, _FREE = float(np.radians(32)), 1.25, 0.06
+_FOV, ASPECT, _FREE = float(np.radians(32)), 1.25, 0.06
 #: How often the middle is looked for.
 _ROUNDS = 6
 #: Elevations of the corners of the room [rad]; in the plane it is looked at from this far off straight above.
@@ -61,4 +61,4 @@ def _direction(azimuth: float) -> Vector3:
 def _distance(points: Points3) -> float:
     """The least d from which points (x right, y up, z near) are in view: |x| <= tan(fov / 2) aspect (d - z)."""
     half = np.tan(_FOV / 2) * (1 - _FREE)
-    return float((np.abs(points[:, :2]) / half / [_ASPECT, 1.0] + points[:, 2:]).max())
+    return float((np.abs(points[:, :2]) / half / [ASPECT, 1.0] + points[:, 2:]).max())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from fixture_design.contacts import Contact
 from fixture_design.layout import (
@@ -120,18 +120,26 @@ def _told_use(stage: Backdrop, finding: Finding) -> Told:
     return Told()
 
 
-def first_story(stories: tuple[Story, ...], verdict: Verdict) -> int | None:
-    """The one to begin with: what is required and fails; else what carries the loads; else whether it is held."""
-    order = [
-        lambda story: story.required and story.answer is Answer.NO,
-        lambda story: story.required and story.answer is Answer.UNDECIDED,
-        lambda story: story.claim == "holds_loads",
-        lambda story: story.group == "all" and story.claim == "form_closure",
-        lambda story: story.claim in _HOLDING,
-        lambda story: True,
+def first_story(stories: tuple[Story, ...]) -> int | None:
+    """The one to begin with among those with something to see: see `foremost`."""
+    shown = [number for number, story in enumerate(stories) if story.shown]
+    found = foremost([(stories[k].claim, stories[k].group, stories[k].answer, stories[k].required) for k in shown])
+    return None if found is None else shown[found]
+
+
+def foremost(answers: Sequence[tuple[str, str, Answer | None, bool]]) -> int | None:
+    """Of answers, as (claim, group, answer, required), the number of the one that matters most.
+
+    What is required and fails; what is required and undecided; what carries the loads; whether the part is held, as
+    somebody asked, by everything, by anything; the first. None without any.
+    """
+    order: list[Callable[[str, str, Answer | None, bool], bool]] = [
+        lambda claim, group, answer, required: required and answer is Answer.NO,
+        lambda claim, group, answer, required: required and answer is Answer.UNDECIDED,
+        lambda claim, group, answer, required: claim == "holds_loads",
+        lambda claim, group, answer, required: required and claim in _HOLDING,
+        lambda claim, group, answer, required: group == "all" and claim == "form_closure",
+        lambda claim, group, answer, required: claim in _HOLDING,
+        lambda claim, group, answer, required: True,
     ]
-    for fits in order:
-        for number, story in enumerate(stories):
-            if story.shown and fits(story):
-                return number
-    return None
+    return next((k for fits in order for k, each in enumerate(answers) if fits(*each)), None)

@@ -17,7 +17,7 @@ from fixture_design.layout import (
     Tip,
     Verdict,
 )
-from fixture_design.viewing.palette import ANSWER_SIGNS
+from fixture_design.viewing.palette import answer_sign
 from fixture_design.viewing.words import evidence_in_words
 
 #: Characters of a line that Meshcat's panel shows.
@@ -44,12 +44,13 @@ def answer_line(group: str, claim: str, finding: Finding, required: bool) -> Lin
     """One answer: "✓ locators: deterministic: yes (0.5408)", with the margin; the sign is where it is required."""
     answer = "no contacts" if finding.answer is None else finding.answer.value
     margin = "" if finding.margin is None else f" ({finding.margin:.4g})"
-    mark = ANSWER_SIGNS[finding.answer] if required else "·"
-    return Line(harmless(f"{mark} {group}: {claim}: {answer}{margin}"), (group, claim))
+    return Line(harmless(f"{answer_sign(finding.answer, required)} {group}: {claim}: {answer}{margin}"), (group, claim))
 
 
 def answer_lines(verdict: Verdict) -> list[Line]:
-    """Every answer of every group; of groups with the same contacts the shared ones once, unless they are required."""
+    """Every answer of every group, what is required first; of groups with the same contacts the shared ones once,
+    unless they are required.
+    """
     required = {(each.group, each.require) for each in verdict.requirements}
     lines, told = [], dict[tuple[str, ...], str]()
     for group in verdict.groups.values():
@@ -57,7 +58,7 @@ def answer_lines(verdict: Verdict) -> list[Line]:
         for claim, finding in group.findings.items():
             if first or (group.name, claim) in required:
                 lines.append(answer_line(group.name, claim, finding, (group.name, claim) in required))
-    return lines
+    return sorted(lines, key=lambda line: line.story not in required)
 
 
 def verdict_lines(verdict: Verdict, told: tuple[str, str] | None) -> list[Line]:

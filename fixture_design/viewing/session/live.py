@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,12 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fixture_design.errors import InputError
-from fixture_design.layout import Answer, Verdict
-from fixture_design.viewing.drake_meshcat import draw, started
+from fixture_design.layout import Verdict
+from fixture_design.viewing.drake_meshcat import SAID, draw, started
 from fixture_design.viewing.palette import BLACK, MOTION
 from fixture_design.viewing.scene import Arrow, Camera, Label, Scene, Solid, Sphere, Story, Thing, scene_of, solid_of
 from fixture_design.viewing.scene.space import lifted
+from fixture_design.viewing.scene.stories import foremost
 from fixture_design.viewing.session.lines import Line, element_line, verdict_lines, wrapped
+from fixture_design.viewing.session.page import Server, session_page
 from fixture_design.viewing.session.panel import Panel, Reading
 from fixture_design.viewing.session.sliding import axes
 from fixture_design.viewing.session.steering import Steering
@@ -46,8 +49,12 @@ class Live:
         self.steering, self.drawn = steering, 0
         self._flat = steering.layout.space == "planar"
         self._solid: Solid | None = solid_of(steering.layout, steering.work.geometry)
-        self._meshcat: Meshcat = _opened(port)
-        self.address: str = self._meshcat.web_url()
+        self._scene: Scene | None = None
+        self._begun = threading.Event()
+        self._server = _served(self._page, port)
+        self.address = self._server.address
+        self._meshcat: Meshcat = _opened(self._server)
+        self._socket: int = self._meshcat.port()  # asked in this thread, the only one that Drake lets ask
         size = steering.work.scale().length
         actions = [*steering.actions, QUIT]
         self._panel = Panel(self._meshcat, actions, _REACH * size, round_size(_STEP * size), self._flat)
@@ -57,6 +64,7 @@ class Live:
         self._reading: Reading | None = None
         self._shown: tuple[str | None, int, bool] | None = None
         self._redraw()
+        self._begun.set()
 
     def run(self, stopped: Callable[[], bool]) -> None:
         """Until it is stopped, or somebody quits in the browser."""
@@ -67,7 +75,14 @@ class Live:
 
     def close(self) -> None:
         """Ends it, in the thread that made it."""
+        self._server.close()
         del self._panel, self._meshcat
+
+    def _page(self) -> str:
+        """In the server's thread; whoever comes before the first drawing waits."""
+        self._begun.wait()
+        assert self._scene is not None
+        return session_page(self._scene, self._socket)
 
     def step(self) -> bool:
         """Does what was asked for since the last step; False once that was to quit."""
@@ -104,12 +119,12 @@ class Live:
     def _redraw(self) -> None:
         steering = self.steering
         self._seen = steering.version
-        told = steering.told if _known(steering.told, steering.verdict) else foremost(steering.verdict)
+        told = steering.told if _known(steering.told, steering.verdict) else _foremost(steering.verdict)
         tell = set() if told is None else {told}
         scene = scene_of(steering.layout, steering.verdict, self._solid, tell, self._camera)
         story = next((each for each in scene.stories if (each.group, each.claim) == told), None)
         self._things = draw(self._meshcat, self._with_mark(scene), story or _nothing(scene), self._things)
-        self._camera = self._camera or scene.camera
+        self._scene, self._camera = scene, self._camera or scene.camera
         self._show_sliders()
         self._panel.write(self._lines(told))
         self.drawn += 1
@@ -136,10 +151,11 @@ class Live:
         ]
 
     def _with_mark(self, scene: Scene) -> Scene:
-        """With a ball around the chosen element, and arrows along which it is slid."""
+        """With a ball around the chosen element, arrows along which it is slid, and what is said."""
+        said = Label(SAID, self.steering.message, scene.center)
         element = self.steering.session.element
         if element is None:
-            return scene
+            return replace(scene, labels=(*scene.labels, said))
         at, size = lifted(element.at), scene.size
         things: list[Thing] = [Thing("chosen/ball", Sphere(at, _MARK * size), MOTION, 0.5)]
         labels: list[Label] = []
@@ -148,32 +164,39 @@ class Live:
             end = at + _ARROW * size * np.asarray(way)
             things.append(Thing(f"chosen/{name}", Arrow(at, end, _MARK * size / 5), BLACK))
             labels.append(Label("chosen", name, end + _MARK * size * np.asarray(way)))
-        return replace(scene, things=(*scene.things, *things), labels=(*scene.labels, *labels))
+        return replace(scene, things=(*scene.things, *things), labels=(*scene.labels, *labels, said))
 
 
-def _opened(port: int | None) -> Meshcat:
+def _served(page: Callable[[], str], port: int | None) -> Server:
     if port is not None and not _LOWEST_PORT <= port <= _HIGHEST_PORT:
         expected = f"{_LOWEST_PORT} to {_HIGHEST_PORT}"
         raise InputError("no port for a session", found=str(port), expected=expected)
     try:
-        return started(port)
-    except RuntimeError as cause:
+        return Server(page, port)
+    except OSError as cause:
         where = "any port" if port is None else f"port {port}"
         raise InputError(f"the session cannot listen on {where}: {cause}", expected="a port that is free") from cause
 
 
-def foremost(verdict: Verdict) -> tuple[str, str] | None:
-    """(group, claim) of the answer that matters most: what is required and fails, then what is required and undecided,
-    then what carries the loads, then whether everything is held. None without contacts.
-    """
-    for answer in (Answer.NO, Answer.UNDECIDED):
-        for each in verdict.requirements:
-            if each.answer is answer:
-                return each.group, each.require
-    groups = [group for group in verdict.groups.values() if group.contacts]
-    carrying = [(group.name, "holds_loads") for group in groups if "holds_loads" in group.findings]
-    closing = [(group.name, "form_closure") for group in groups if group.name == "all"]
-    return next(iter([*carrying, *closing]), None)
+def _opened(server: Server) -> Meshcat:
+    try:
+        return started()
+    except RuntimeError as cause:
+        server.close()
+        raise InputError(f"the session cannot listen on any port: {cause}", expected="a port that is free") from cause
+
+
+def _foremost(verdict: Verdict) -> tuple[str, str] | None:
+    """(group, claim) of the answer that matters most, of groups with contacts; None without any."""
+    required = {(each.group, each.require) for each in verdict.requirements}
+    answers = [
+        (claim, group.name, finding.answer, (group.name, claim) in required)
+        for group in verdict.groups.values()
+        if group.contacts
+        for claim, finding in group.findings.items()
+    ]
+    number = foremost(answers)
+    return None if number is None else (answers[number][1], answers[number][0])
 
 
 def _known(told: tuple[str, str] | None, verdict: Verdict) -> bool:

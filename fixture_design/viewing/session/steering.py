@@ -242,7 +242,8 @@ class Steering:
 
     def _saved(self, target: Path, content: str | None) -> None:
         self.session, self.target, self._known = steps.as_saved(self.session), target, content
-        self._say(f"saved {target}")
+        nothing = "" if self.verdict.contacts else "; it has no contacts yet, and `verify` refuses such a layout"
+        self._say(f"saved {target}{nothing}")
 
     def _progress(self, words: str, part: float) -> None:
         """From the errand's thread."""

@@ -42,7 +42,6 @@ class Session:
         assert self.live.address is not None
         page.events.clear()
         page.open(self.live.address, f"{TEXTS}.includes('quit')")
-        page.click(".dg.main > .close-button")
 
     def texts(self) -> list[str]:
         return self.page.run(TEXTS)
@@ -181,6 +180,26 @@ def test_a_click_on_an_answer_shows_what_it_rests_on(session: Session) -> None:
     session.click(line)
     session.until(lambda: session.live.told is None)
     session.stays(None)
+
+
+def test_scene_and_verdict_are_seen_together(session: Session) -> None:
+    """The page does not scroll, the controls do; names are there, the legend, and what was said last."""
+    page = session.page
+    session.click(session.texts()[-1])  # the last line, which is scrolled to
+    assert page.run("document.documentElement.scrollHeight <= innerHeight && scrollX === 0 && scrollY === 0")
+    box = page.run(
+        "(r => [r.top, r.left, r.width])(document.querySelector('#meshcat-pane canvas').getBoundingClientRect())"
+    )
+    assert box[:2] == [0, 0]
+    assert box[2] < page.run("innerWidth") - page.run("document.querySelector('#panel').offsetWidth") + 1
+    names = {label["text"] for label in page.run("texts()")}
+    assert {element.name for element in session.live.layout.elements} <= names
+    legend = page.run("document.querySelector('.legend').textContent")
+    assert "locator" in legend
+    assert "pushes that balance" in legend
+    session.live.remove()
+    session.live.save()
+    session.until(lambda: page.run("document.querySelector('#said').textContent").startswith("saved "))
 
 
 def test_quit_in_the_page_leaves_a_recovery_file(chrome: Page, tmp_path: Path) -> None:
