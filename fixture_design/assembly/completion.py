@@ -16,7 +16,7 @@ from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, state_of
+from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, states_of
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
 
@@ -25,6 +25,9 @@ _DIRECTIONS = 6
 
 #: Digits to which configurations are compared, so that each is followed once.
 _SAME_DIGITS = 7
+
+#: Configurations that are gone on from before what they led to is kept: an interrupt loses no more.
+_TOGETHER = 256
 
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
@@ -38,9 +41,15 @@ def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[s
         start = joined([fresh, _aligned(known, seen)])
         if not len(start):
             return
-        found = [loosen(known, start), tighten(known, start, rng), aim(known.geometry, start)]
-        fresh, _ = known.add(joined(found))
-        progress(f"{len(known.samples)} states, {len(known.transitions)} transitions")
+        kept = []
+        for first in range(0, len(start), _TOGETHER):
+            some = start[np.arange(first, min(first + _TOGETHER, len(start)))]
+            found = [loosen(known, some), tighten(known, some, rng), aim(known.geometry, some)]
+            kept.append(known.add(joined(found))[0])
+            left = len(start) - first - len(some)
+            more = f", {left} configurations to go on from" if left else ""
+            progress(f"{len(known.samples)} states, {len(known.transitions)} transitions{more}")
+        fresh = joined(kept)
 
 
 def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
@@ -140,8 +149,5 @@ def _padded(touching: np.ndarray) -> np.ndarray:
 
 def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
     geometry = known.geometry
-    pairs = [
-        (state_of(geometry, more), state_of(geometry, fewer))
-        for more, fewer in zip(tight.touching, loose.touching, strict=True)
-    ]
+    pairs = zip(states_of(geometry, tight.touching), states_of(geometry, loose.touching), strict=True)
     known.connect(pairs, tight.q, geometry.between(tight.q, loose.q))

@@ -17,7 +17,7 @@ import umsgpack
 
 import fixture_design as fd
 from fixture_design import Contact, Layout
-from fixture_design.errors import FileFormatError, InputError, UnsupportedError
+from fixture_design.errors import FileFormatError, InputError
 from fixture_design.layout import Part, Pose
 from fixture_design.viewing import preview_page
 from fixture_design.viewing.meshcat_commands import draw
@@ -145,12 +145,6 @@ def test_graphs_have_a_page_with_every_state(tmp_path: Path) -> None:
     for state in found.states:
         assert f"<td>{state.id}</td>" in page
     assert fd.preview(found).picture().startswith(b"\x89PNG")
-
-
-def test_a_graph_in_space_says_that_it_is_not_drawn() -> None:
-    found = graph()
-    with pytest.raises(UnsupportedError, match="space"):
-        fd.preview(replace(found, assembly=replace(found.assembly, space="spatial")))
 
 
 def test_a_design_without_a_layout_has_no_preview() -> None:
