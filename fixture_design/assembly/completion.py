@@ -100,19 +100,15 @@ def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sort
 
 def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
     """The configurations moved onto the equations that hold and one more: each other pair that takes part."""
-    taking = np.flatnonzero(geometry.takes_part)
-    kept = _padded(start.touching)
-    found = []
-    for k, (q, touching) in enumerate(zip(start.q, start.touching, strict=True)):
-        others = taking[~touching[taking]]
-        row = kept[k][kept[k] >= 0]
-        sets = np.column_stack([np.repeat(row[None], len(others), axis=0), others]).astype(int)
-        found.append((np.repeat(q[None], len(others), axis=0), sets))
-    width = max((sets.shape[1] for _, sets in found), default=1)
-    filled = [np.column_stack([sets, np.repeat(sets[:, -1:], width - sets.shape[1], axis=1)]) for _, sets in found]
-    if not found:
-        return start
-    return onto(geometry, np.vstack([q for q, _ in found]), np.vstack(filled))
+    found = [start]
+    counts = start.touching.sum(axis=1)
+    # those with as many contacts together, so that none is solved with more equations than it has
+    for count in np.unique(counts).tolist():
+        rows = np.flatnonzero(counts == count)
+        kept = np.nonzero(start.touching[rows])[1].reshape(len(rows), count)
+        row, other = np.nonzero(~start.touching[rows] & geometry.takes_part)
+        found.append(onto(geometry, start.q[rows][row], np.column_stack([kept[row], other])))
+    return joined(found)
 
 
 def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
