@@ -16,7 +16,7 @@ from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, state_of
+from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, states_of
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
 
@@ -25,6 +25,9 @@ _DIRECTIONS = 6
 
 #: Digits to which configurations are compared, so that each is followed once.
 _SAME_DIGITS = 7
+
+#: Configurations that are gone on from before what they led to is kept: an interrupt loses no more.
+_TOGETHER = 256
 
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
@@ -38,9 +41,15 @@ def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[s
         start = joined([fresh, _aligned(known, seen)])
         if not len(start):
             return
-        found = [loosen(known, start), tighten(known, start, rng), aim(known.geometry, start)]
-        fresh, _ = known.add(joined(found))
-        progress(f"{len(known.samples)} states, {len(known.transitions)} transitions")
+        kept = []
+        for first in range(0, len(start), _TOGETHER):
+            some = start[np.arange(first, min(first + _TOGETHER, len(start)))]
+            found = [loosen(known, some), tighten(known, some, rng), aim(known.geometry, some)]
+            kept.append(known.add(joined(found))[0])
+            left = len(start) - first - len(some)
+            more = f", {left} configurations to go on from" if left else ""
+            progress(f"{len(known.samples)} states, {len(known.transitions)} transitions{more}")
+        fresh = joined(kept)
 
 
 def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
@@ -91,19 +100,15 @@ def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sort
 
 def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
     """The configurations moved onto the equations that hold and one more: each other pair that takes part."""
-    taking = np.flatnonzero(geometry.takes_part)
-    kept = _padded(start.touching)
-    found = []
-    for k, (q, touching) in enumerate(zip(start.q, start.touching, strict=True)):
-        others = taking[~touching[taking]]
-        row = kept[k][kept[k] >= 0]
-        sets = np.column_stack([np.repeat(row[None], len(others), axis=0), others]).astype(int)
-        found.append((np.repeat(q[None], len(others), axis=0), sets))
-    width = max((sets.shape[1] for _, sets in found), default=1)
-    filled = [np.column_stack([sets, np.repeat(sets[:, -1:], width - sets.shape[1], axis=1)]) for _, sets in found]
-    if not found:
-        return start
-    return onto(geometry, np.vstack([q for q, _ in found]), np.vstack(filled))
+    found = [start]
+    counts = start.touching.sum(axis=1)
+    # those with as many contacts together, so that none is solved with more equations than it has
+    for count in np.unique(counts).tolist():
+        rows = np.flatnonzero(counts == count)
+        kept = np.nonzero(start.touching[rows])[1].reshape(len(rows), count)
+        row, other = np.nonzero(~start.touching[rows] & geometry.takes_part)
+        found.append(onto(geometry, start.q[rows][row], np.column_stack([kept[row], other])))
+    return joined(found)
 
 
 def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -140,8 +145,5 @@ def _padded(touching: np.ndarray) -> np.ndarray:
 
 def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
     geometry = known.geometry
-    pairs = [
-        (state_of(geometry, more), state_of(geometry, fewer))
-        for more, fewer in zip(tight.touching, loose.touching, strict=True)
-    ]
+    pairs = zip(states_of(geometry, tight.touching), states_of(geometry, loose.touching), strict=True)
     known.connect(pairs, tight.q, geometry.between(tight.q, loose.q))

@@ -17,7 +17,8 @@ from fixture_design.assembly.least_squares import solved
 from fixture_design.assembly.sorting import Sorted, joined, sort_configurations
 from fixture_design.tolerances import SOLVED
 
-#: Lengths of a motion, relative to the longest, the shortest first. The first few that tell what touches must agree.
+#: Lengths of a motion, relative to the longest, the shortest first. The first few that tell what touches must agree,
+#: the third of all among them: after it there are too few.
 _SHARES = (0.003, 0.03, 0.1, 0.3, 1.0)
 _MUST_AGREE = 3
 
@@ -54,7 +55,27 @@ def follow(geometry: ContactGeometry, q: np.ndarray, displacements: np.ndarray, 
     if not len(q):
         return Followed(np.zeros(0, dtype=int), sort_configurations(geometry, q))
     longest = _longest(geometry, q, displacements)
-    ways = [_moved(geometry, q, displacements, kept, share * longest) for share in _SHARES]
+    # at the last length that must agree nearly all fail that do: they need not be looked at any further
+    decisive = _moved(geometry, q, displacements, kept, _SHARES[_MUST_AGREE - 1] * longest)
+    lasting = np.flatnonzero(decisive.clear)
+    followed = _followed(
+        geometry, q[lasting], displacements[lasting], kept[lasting], longest[lasting], decisive[lasting]
+    )
+    return Followed(lasting[followed.rows], followed.ends)
+
+
+def _followed(
+    geometry: ContactGeometry,
+    q: np.ndarray,
+    displacements: np.ndarray,
+    kept: np.ndarray,
+    longest: np.ndarray,
+    decisive: Sorted,
+) -> Followed:
+    ways = [
+        decisive if k == _MUST_AGREE - 1 else _moved(geometry, q, displacements, kept, share * longest)
+        for k, share in enumerate(_SHARES)
+    ]
     # the shortest lengths may be too short to tell what touches; what they say is not wrong, but nothing
     silent = np.logical_and.accumulate([way.admissible & ~way.clear for way in ways])
     first = silent.sum(axis=0)

@@ -87,16 +87,17 @@ class _Modes:
         direction = np.round(displacement, 3).tobytes()
         full = np.zeros(len(self.free))
         full[self.free] = displacement
-
-        def taken(kept: Mask) -> bool:
-            # where contacts depend on each other, the first order does not tell all motions apart
-            doubtful = self.dependent(kept) or not pattern.any()
-            key = pattern.tobytes() + np.packbits(kept).tobytes() + (direction if doubtful else b"")
-            return self.found.setdefault(key, mode := Mode(full, kept)) is mode
-
-        if taken(kept) and self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
+        if not self._new(pattern, direction, Mode(full, kept)):
+            return
+        if self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
             for fewer in _with_dropped(kept):
-                taken(fewer)
+                self._new(pattern, direction, Mode(full, fewer))
+
+    def _new(self, pattern: np.ndarray, direction: bytes, mode: Mode) -> bool:
+        # where contacts depend on each other, the first order does not tell all motions apart
+        doubtful = not pattern.any() or self.dependent(mode.kept)
+        key = pattern.tobytes() + np.packbits(mode.kept).tobytes() + (direction if doubtful else b"")
+        return self.found.setdefault(key, mode) is mode
 
     def dependent(self, kept: Mask) -> bool:
         """Whether the face vectors of some contacts depend on each other."""

@@ -70,4 +70,12 @@ def _sorted(geometry: ContactGeometry, q: np.ndarray) -> Sorted:
 
 def state_of(geometry: ContactGeometry, touching: Mask) -> State:
     """The names of the pairs that touch and take part."""
-    return tuple(sorted(geometry.names[k] for k in np.flatnonzero(touching & geometry.takes_part)))
+    names = geometry.names
+    return tuple(sorted([names[k] for k in np.flatnonzero(touching & geometry.takes_part).tolist()]))
+
+
+def states_of(geometry: ContactGeometry, touching: Bool[np.ndarray, "n P"]) -> list[State]:
+    """As `state_of`, of each row; many rows are the same."""
+    patterns, places = np.unique(touching, axis=0, return_inverse=True)
+    states = [state_of(geometry, pattern) for pattern in patterns]
+    return [states[place] for place in places.ravel().tolist()]

@@ -223,15 +223,11 @@ class SpatialPairs:
         values = np.zeros((*chosen.shape, 3))
         gradients = np.zeros((*chosen.shape, 3, 6))
         for group, start, size in zip(self.groups, self._starts(), self.sizes.tolist(), strict=True):
-            inside = (chosen >= start) & (chosen < start + size)
-            if not inside.any():
-                continue
-            columns = np.flatnonzero(inside.any(axis=0))
-            local = np.clip(chosen[:, columns] - start, 0, size - 1)
-            found = group.equations(R, position, local)
-            here = inside[:, columns]
-            values[:, columns] = np.where(here[..., None], found[0], values[:, columns])
-            gradients[:, columns] = np.where(here[..., None, None], found[1], gradients[:, columns])
+            rows, columns = np.nonzero((chosen >= start) & (chosen < start + size))
+            if rows.size:
+                local = chosen[rows, columns][:, None] - start
+                found = group.equations(R[rows], position[rows], local)
+                values[rows, columns], gradients[rows, columns] = found[0][:, 0], found[1][:, 0]
         return PairEquations(values, gradients)
 
     def distances(self, R: np.ndarray, position: np.ndarray) -> np.ndarray:
