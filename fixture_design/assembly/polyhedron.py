@@ -20,6 +20,10 @@ from fixture_design.layout import Part, Pose
 if TYPE_CHECKING:
     from fixture_design.geometry import PartGeometry
 
+#: As many facets that look like pieces of round surfaces are taken as the plane facets that they are: a polyhedron may
+#: have its corners on a sphere. More stand for something round.
+MOST_STRIPS = 40
+
 #: A shell is convex if its hull has no more than this much more volume [-].
 _CONVEX = 1e-6
 
@@ -60,7 +64,7 @@ class Polyhedron:
         """A part, placed; facets in the order of their names.
 
         Raises:
-            UnsupportedError: round surfaces, facets that do not meet in points, too many convex pieces.
+            UnsupportedError: round surfaces of many facets, facets that do not meet in points, too many convex pieces.
         """
         _refuse_round(geometry)
         edges = mesh_edges(geometry)
@@ -109,12 +113,14 @@ def polyhedron_of(body: AssemblyBody) -> Polyhedron:
 
 
 def _refuse_round(geometry: PartGeometry) -> None:
-    names = [surface.name for surface in geometry.smooth_surfaces]
-    if names:
+    surfaces = geometry.smooth_surfaces
+    count = sum(len(surface.facets) for surface in surfaces)
+    if count > MOST_STRIPS:
+        names = ", ".join(surface.name for surface in surfaces)
         raise UnsupportedError(
-            f"{geometry.name!r} has round surfaces ({', '.join(names)}), and round features form no contact pairs",
-            found=f"a mesh with {len(geometry.facets)} facets",
-            expected="plane facets only; a prism with few sides stands for a round part, within its circles",
+            f"{geometry.name!r} has round surfaces ({names}), and round features form no contact pairs",
+            found=f"{count} facets that stand for them",
+            expected=f"at most {MOST_STRIPS} such facets, which are then taken as they are: a prism within its circles",
         )
 
 
