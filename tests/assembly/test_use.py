@@ -11,7 +11,13 @@ import pytest
 from fixture_design.assembly import ContactStateGraph, contacts_at, state_at, state_control, state_graph, state_path
 from fixture_design.cones import union_element
 from fixture_design.contacts import face_vectors
-from fixture_design.errors import AssemblyError, FileFormatError, InputError, UnknownNameError, UnknownNameError, UnsupportedError
+from fixture_design.errors import (
+    AssemblyError,
+    FileFormatError,
+    InputError,
+    UnknownNameError,
+    UnsupportedError,
+)
 from fixture_design.io import json_schema, read_assembly, read_graph, write_graph, write_graphml
 from fixture_design.viewing import graph_picture, preview, write_graph_picture
 from fixture_design.viewing.graph_page import graph_page
