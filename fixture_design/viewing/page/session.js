@@ -6,6 +6,9 @@ const ASPECT = Number(document.body.dataset.aspect), LABELS = ["drake", "scene",
 const viewer = new MeshCat.Viewer(byId("meshcat-pane"));
 let lastSeen = "";
 window.viewer = viewer;
+// as bright as Drake's own page makes its lights
+const LIGHTS = { SpotLight: 30, PointLightNegativeX: 25, PointLightPositiveX: 25, AmbientLight: 0.3, FillLight: 0.5 };
+for (const [name, power] of Object.entries(LIGHTS)) viewer.set_property(["Lights", name, "<object>"], "intensity", power);
 byId("controls").appendChild(viewer.gui.domElement);
 viewer.gui.open();
 

@@ -123,7 +123,7 @@ class Live:
         tell = set() if told is None else {told}
         scene = scene_of(steering.layout, steering.verdict, self._solid, tell, self._camera)
         story = next((each for each in scene.stories if (each.group, each.claim) == told), None)
-        self._things = draw(self._meshcat, self._with_mark(scene), story or _nothing(scene), self._things)
+        self._things = draw(self._meshcat, self._with_mark(scene, story), story or _nothing(scene), self._things)
         self._scene, self._camera = scene, self._camera or scene.camera
         self._show_sliders()
         self._panel.write(self._lines(told))
@@ -150,9 +150,10 @@ class Live:
             *wrapped(unsaved + str(steering.target.name)),
         ]
 
-    def _with_mark(self, scene: Scene) -> Scene:
-        """With a ball around the chosen element, arrows along which it is slid, and what is said."""
-        said = Label(SAID, self.steering.message, scene.center)
+    def _with_mark(self, scene: Scene, story: Story | None) -> Scene:
+        """With a ball around the chosen element, arrows along which it is slid, and what is said, else what is told."""
+        words = "" if story is None else f"{story.group}: {story.claim.replace('_', ' ')}: {story.words}"
+        said = Label(SAID, self.steering.message or words, scene.center)
         element = self.steering.session.element
         if element is None:
             return replace(scene, labels=(*scene.labels, said))
