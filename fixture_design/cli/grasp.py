@@ -61,7 +61,7 @@ def grasp(
     with interruptible() as cancelled:
         try:
             if joint or pose is not None:
-                result = _judged(read, held_part, joint or [], pose, wrench)
+                result = _judged(read, held_part, joint or [], pose, wrench, table)
             else:
                 from fixture_design.grasp.search import Search  # noqa: PLC0415 - slow, and only for a search
                 from fixture_design.grasp.search import grasp as search_grasps  # noqa: PLC0415 - likewise
@@ -95,17 +95,22 @@ def _part(path: Path, scale: float) -> Part:
     return layout.part
 
 
-def _judged(hand: Hand, part: Part, joints: Sequence[str], pose: str | None, load: np.ndarray | None) -> GraspResult:
+def _judged(
+    hand: Hand, part: Part, joints: Sequence[str], pose: str | None, load: np.ndarray | None, table: float | None
+) -> GraspResult:
     """The one grasp that the hand makes where it is."""
     from fixture_design.geometry import load_part  # noqa: PLC0415 - Drake and trimesh
-    from fixture_design.grasp import GraspResult, Posture, grasp_at, load_hand  # noqa: PLC0415 - likewise
+    from fixture_design.grasp import Posture, load_hand, posed  # noqa: PLC0415 - likewise
 
     model = load_hand(hand)
-    given = dict(_assignment(text) for text in joints)
+    given: dict[str, float] = {}
+    for name, value in map(_assignment, joints):
+        if name in given:
+            raise InputError("--joint is given twice", found=f"{name}={value:g}", expected="each joint once")
+        given[name] = value
     numbers = [0.0] * 6 if pose is None else _numbers(pose, (3, 6), "--pose")
     X_WH = Pose.from_xyz_rpy(numbers[:3], numbers[3:] or [0.0, 0.0, 0.0])
-    found = grasp_at(Posture(model, model.positions(given), X_WH), part, load_part(part), load)
-    return GraspResult(found.closed, (found,), notes=model.notes)
+    return posed(Posture(model, model.positions(given), X_WH), part, load_part(part), load, table)
 
 
 def _assignment(text: str) -> tuple[str, float]:

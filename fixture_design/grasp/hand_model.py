@@ -20,10 +20,12 @@ from jaxtyping import Float
 from fixture_design.arrays import Indices, Mask, Point, Weights, read_only
 from fixture_design.errors import GeometryError, UnknownNameError
 from fixture_design.geometry.distance import guarded
+from fixture_design.grasp.couplings import uncoupled_jaws
 from fixture_design.grasp.hand import Fingertip, Hand, HandError, Joint, JointRule
 from fixture_design.grasp.link_geometry import LinkGeometry, link_geometry
 from fixture_design.grasp.model_text import ModelText, model_text
 from fixture_design.layout import Pose
+from fixture_design.tolerances import JOINT_SLACK
 
 #: What a joint without limits is taken to do, a full turn or a metre, either way.
 _UNLIMITED = {"revolute": math.pi, "prismatic": 1.0}
@@ -98,7 +100,8 @@ class HandModel:
         """Positions by joint name as an array; joints that are not given are in the middle, or follow.
 
         Raises:
-            UnknownNameError: there is no such joint.  HandError: a position outside of its range.
+            UnknownNameError: there is no such joint.
+            HandError: a position outside of its range, or of a joint that follows another.
         """
         numbers = {joint.name: number for number, joint in enumerate(self.joints)}
         q = self.middle.copy()
@@ -106,7 +109,10 @@ class HandModel:
             if name not in numbers:
                 raise UnknownNameError("joint", name, numbers, source=self.hand.source or self.hand.model)
             joint = self.joints[numbers[name]]
-            if not joint.lower <= value <= joint.upper:
+            if joint.follows is not None:
+                problem = f"joint {name!r} follows {joint.follows!r}, and cannot be set"
+                raise HandError(problem, found=f"{value:g}", expected="positions of joints that move on their own")
+            if not joint.lower - JOINT_SLACK <= value <= joint.upper + JOINT_SLACK:
                 found, expected = f"{value:g}", f"from {joint.lower:g} to {joint.upper:g}"
                 raise HandError(f"joint {name!r} does not go there", found=found, expected=expected)
             q[numbers[name]] = value
@@ -126,8 +132,7 @@ class HandModel:
 
     def within(self, q: Float[np.ndarray, "n j"]) -> Mask:
         """Which positions are within all ranges, but for rounding."""
-        slack = 1e-6
-        return np.all((q >= self.lower - slack) & (q <= self.upper + slack), axis=1)
+        return np.all((q >= self.lower - JOINT_SLACK) & (q <= self.upper + JOINT_SLACK), axis=1)
 
     def poses(self, q: Weights) -> dict[str, Pose]:
         """X_HL of every link that is made of something or has a fingertip."""
@@ -227,12 +232,13 @@ def load_hand(hand: Hand) -> HandModel:
         hand, joints, hand.fingertips, links, notes, plant, diagram, plant.GetMyMutableContextFromRoot(context)
     )
     _check_links(model)
-    if hand.fingertips:
-        return model
-    from fixture_design.grasp.guessed_tips import guessed_tips
+    if not hand.fingertips:
+        from fixture_design.grasp.guessed_tips import guessed_tips
 
-    tips, said = guessed_tips(model)
-    return replace(model, fingertips=tips, notes=(*notes, *said))
+        tips, said = guessed_tips(model)
+        model = replace(model, fingertips=tips, notes=(*notes, *said))
+    jaws = uncoupled_jaws(joints, model.fingertips)
+    return replace(model, notes=(*model.notes, jaws)) if jaws else model
 
 
 def built_plant(text: ModelText, beside: str | None = None) -> tuple[Any, Any, list[Any]]:

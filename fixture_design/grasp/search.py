@@ -112,8 +112,10 @@ def grasp(
     model = load_hand(hand) if isinstance(hand, Hand) else hand
     count = len(model.fingertips)
     if count < 2:
-        reason = f"{model.name} has {count} fingertip{'s' if count != 1 else ''}: one finger pushes, and holds nothing"
-        return GraspResult(Answer.NO, (), reason=reason, notes=model.notes)
+        # the palm or another link may hold against it, so this is no proof that there is no grasp
+        fingers = "one fingertip" if count else "no fingertips"
+        reason = f"{model.name} has {fingers}, and only grasps with two or more are looked for"
+        return GraspResult(Answer.UNDECIDED, (), reason=reason, notes=model.notes)
     geometry = geometry or load_part(part)
     run = _Run(model, Site.of(part, geometry, search.table), search, progress, cancelled)
     return run.with_sets() if count > 2 else run.with_pairs()
@@ -129,6 +131,7 @@ class _Run:
         self.progress, self.cancelled = progress, cancelled
         self.rng = np.random.default_rng(search.seed)
         self.outcomes: Counter[str] = Counter()
+        self.answers: dict[tuple[str, ...], Answer] = {}
         self.points = spread(site.geometry, search.seed)
         self.reach = Reach.of(model)
         self.friction = min(model.hand.friction if tip.friction is None else tip.friction for tip in model.fingertips)
@@ -184,7 +187,9 @@ class _Run:
             return GraspResult(Answer.UNDECIDED, (), facing, {}, reason, self.model.notes)
         drafts = self._tried(library, _in_turns(wanted))
         result = self._result(drafts)
-        done = {tuple(draft.features): "closed" for draft in drafts}
+        done = {
+            features: "closed" if answer is Answer.YES else str(answer) for features, answer in self.answers.items()
+        }
         narrow_ones = {region.features for region in narrow}
         facing = tuple(
             _outcome(region, done, "too wide" if region.features in narrow_ones else "not reached")
@@ -256,6 +261,7 @@ class _Run:
         best: dict[tuple[str, ...], Grasp] = {}
         for one in better_first(judged_ones):
             best.setdefault(one.features, one)
+        self.answers = {features: one.closed for features, one in best.items()}
         grasps = tuple(with_strength(one, self.search.load) for one in list(best.values())[: self.search.most])
         tried = dict(self.outcomes.most_common())
         holding = [g for g in grasps if g.closed is Answer.YES and (self.search.load is None or g.held is not None)]
