@@ -104,17 +104,18 @@ class HandModel:
             HandError: a position outside of its range, or of a joint that follows another.
         """
         numbers = {joint.name: number for number, joint in enumerate(self.joints)}
-        q = self.middle.copy()
+        q, file = self.middle.copy(), self.hand.source or self.hand.model
         for name, value in given.items():
             if name not in numbers:
-                raise UnknownNameError("joint", name, numbers, source=self.hand.source or self.hand.model)
+                raise UnknownNameError("joint", name, numbers, source=file)
             joint = self.joints[numbers[name]]
             if joint.follows is not None:
                 problem = f"joint {name!r} follows {joint.follows!r}, and cannot be set"
-                raise HandError(problem, found=f"{value:g}", expected="positions of joints that move on their own")
+                expected = "positions of joints that move on their own"
+                raise HandError(problem, source=file, found=f"{value:g}", expected=expected)
             if not joint.lower - JOINT_SLACK <= value <= joint.upper + JOINT_SLACK:
                 found, expected = f"{value:g}", f"from {joint.lower:g} to {joint.upper:g}"
-                raise HandError(f"joint {name!r} does not go there", found=found, expected=expected)
+                raise HandError(f"joint {name!r} does not go there", source=file, found=found, expected=expected)
             q[numbers[name]] = value
         return self.completed(q[self.free])
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Scale
-from fixture_design.errors import UnsupportedError
+from fixture_design.errors import InputError, UnsupportedError
 from fixture_design.geometry import PartGeometry, SurfacePoints, load_part
 from fixture_design.geometry.urdf_tree import composed
 from fixture_design.grasp.hand import Hand
@@ -65,11 +65,15 @@ class Search:
 
     Attributes:
         most: grasps wanted, one a family.
-        tries: sets of points tried at most.
+        tries: sets of points looked at at most; those of families that are full or given up count.
         seed: of the random numbers.
         table: height of a table in W [m]; None without one.
         load: wrench on the part about its centre of mass that the drives are to hold [N, N m]; None without one.
         error: of the part's pose, for robustness.
+
+    Raises:
+        InputError: less than one grasp or try, a negative seed, a table or load that is not finite, or a load that is
+            no wrench.
     """
 
     most: int = 5
@@ -79,6 +83,16 @@ class Search:
     load: Vector | None = None
     error: PoseError = field(default_factory=PoseError)
 
+    def __post_init__(self) -> None:
+        for name, least in (("most", 1), ("tries", 1), ("seed", 0)):
+            if getattr(self, name) < least:
+                raise InputError(f"{name!r} is too small", found=str(getattr(self, name)), expected=f">= {least}")
+        if self.table is not None and not np.isfinite(self.table):
+            raise InputError("'table' is no height", found=str(self.table), expected="a finite number [m]")
+        if self.load is not None and (np.shape(self.load) != (6,) or not np.isfinite(self.load).all()):
+            expected = "six finite numbers: force [N] and moment [N m]"
+            raise InputError("'load' is no wrench", found=str(self.load), expected=expected)
+
 
 @dataclass(frozen=True, eq=False)
 class _Wanted:
@@ -87,6 +101,19 @@ class _Wanted:
     spots: Spots
     features: tuple[str, ...]
     seeds: tuple[Seed, ...] = ()
+
+
+def check_kinds(hand: object, part: object) -> None:
+    """Names of files, as the command line takes them, are neither hands nor parts here.
+
+    Raises:
+        InputError: the one is no hand, or the other no part.
+    """
+    if not isinstance(part, Part):
+        expected = "a Part, such as fd.read_layout(file).part"
+        raise InputError("this is no part", found=repr(part), expected=expected)
+    if not isinstance(hand, Hand | HandModel):
+        raise InputError("this is no hand", found=repr(hand), expected="fd.read_hand(file)")
 
 
 def grasp(
@@ -106,6 +133,7 @@ def grasp(
         UnsupportedError: a planar part.
         InputError: the hand or the part cannot be used.
     """
+    check_kinds(hand, part)
     if part.kind == "polygon":
         raise UnsupportedError("hands are spatial, and this part is planar", expected="a layout with role `finger`")
     search = search or Search()

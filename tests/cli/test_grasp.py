@@ -103,9 +103,18 @@ def test_a_part_too_large_exits_with_3():
         (["--joint", "right_joint=0.045", "--joint", "left_joint=0.03"], "'right_joint' follows 'left_joint'"),
         (["--joint", "left_joint=0.02", "--joint", "left_joint=0.03"], "--joint is given twice"),
         (["-o", "no/such/folder/g.yaml"], "folder"),
+        (["-o", "g.html", "--html", "./g.html"], "the same file"),
+        (["--table", "nan"], "--table cannot be used"),
     ],
 )
 def test_bad_input_is_one_message(cube, arguments, problem):
     found = _run(JAW, cube, *arguments)
     assert isinstance(found.exception, InputError)
     assert problem in str(found.exception)
+    assert str(cube) not in str(found.exception)  # it is not the part's fault
+
+
+def test_a_part_as_the_hand_is_not_a_hand(tmp_path):
+    file = tmp_path / "part.stl"
+    file.write_bytes(bytes(range(256)))
+    assert "this is not a hand" in str(_run(file, file).exception)

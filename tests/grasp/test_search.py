@@ -9,10 +9,11 @@ import pytest
 
 import fixture_design as fd
 from fixture_design.contacts import Scale
+from fixture_design.errors import InputError
 from fixture_design.geometry import load_part
 from fixture_design.grasp import Posture, Search, grasp_at, posed
 from fixture_design.grasp.library import Spots, kabsch
-from fixture_design.grasp.search import grasp
+from fixture_design.grasp.search import check_kinds, grasp
 from fixture_design.grasp.spots import antipodal, closing_sets, opposite, regions_of, spread
 from fixture_design.grasp.touching import touching
 from fixture_design.layout import Answer, Part, Pose
@@ -223,6 +224,24 @@ def test_public_hands_close_on_more(name, shape):
     result = grasp(public_hand(name), part, Search(most=1), geometry)
     assert result.satisfied is Answer.YES
     _stands(result.grasps[0], part, geometry)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "problem"),
+    [({"most": 0}, "'most'"), ({"tries": 0}, "'tries'"), ({"seed": -1}, "'seed'"), ({"table": np.nan}, "'table'"),
+     ({"load": np.zeros(3)}, "'load' is no wrench"), ({"load": np.full(6, np.inf)}, "'load' is no wrench")],
+)  # fmt: skip
+def test_searches_that_cannot_be_are_refused(wrong, problem):
+    with pytest.raises(InputError, match=problem):
+        Search(**wrong)
+
+
+def test_names_of_files_are_no_hands_and_no_parts():
+    part, _ = primitive("cube")
+    with pytest.raises(InputError, match="no part"):
+        check_kinds(model_of(JAW), "cube.stl")
+    with pytest.raises(InputError, match="no hand"):
+        check_kinds("jaw.urdf", part)
 
 
 def test_one_fingertip_is_no_proof_that_nothing_holds():
