@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fixture_design.grasp.hand import Fingertip, Hand, HandError, JointRule
-    from fixture_design.grasp.hand_model import HandModel, load_hand
+    from fixture_design.grasp.hand_loading import load_hand
+    from fixture_design.grasp.hand_model import HandModel
     from fixture_design.grasp.hybrid import hybrid_sets
     from fixture_design.grasp.placed import grasp_at, posed
     from fixture_design.grasp.posture import Posture
@@ -37,7 +38,7 @@ _HOME = {
     "grasp": "search",
     "grasp_at": "placed",
     "hybrid_sets": "hybrid",
-    "load_hand": "hand_model",
+    "load_hand": "hand_loading",
     "posed": "placed",
 }
 

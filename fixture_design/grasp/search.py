@@ -20,13 +20,15 @@ from fixture_design.errors import InputError, UnsupportedError
 from fixture_design.geometry import PartGeometry, SurfacePoints, load_part
 from fixture_design.geometry.urdf_tree import composed
 from fixture_design.grasp.hand import Hand
-from fixture_design.grasp.hand_model import HandModel, load_hand
+from fixture_design.grasp.hand_loading import load_hand
+from fixture_design.grasp.hand_model import HandModel
 from fixture_design.grasp.judging import Draft, Site, better_first, drafted, judged, obstacle, with_strength
 from fixture_design.grasp.library import Library, Seed, Spots
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.reach import Reach
 from fixture_design.grasp.result import FacingRegion, Grasp, GraspResult
 from fixture_design.grasp.robustness import PoseError
+from fixture_design.grasp.rolling import rolled
 from fixture_design.grasp.skin import Skin
 from fixture_design.grasp.spots import (
     Region,
@@ -38,7 +40,7 @@ from fixture_design.grasp.spots import (
     spots_at,
     spread,
 )
-from fixture_design.layout import Answer, Part, Pose
+from fixture_design.layout import Answer, Part
 
 #: Words and how much is done, 0 to 1.
 Progress = Callable[[str, float], None]
@@ -49,8 +51,8 @@ TRIES, DRAFTS, JUDGED = 160, 3, 2
 #: Failures in a row after which a family is given up.
 PATIENCE = 24
 
-#: Seeds tried for one pair of points; two fingertips leave the hand free to roll: so many angles.
-_SEEDS, _ROLLS = 3, 8
+#: Seeds tried for one pair of points.
+_SEEDS = 3
 
 #: Sets whose seeds are looked up, so many each; and those of all seeds that are compared by what runs into the part.
 _SETS, _LOOKED_UP, _COMPARED = 1500, 4, 600
@@ -256,7 +258,7 @@ class _Run:
         # a hand with one joint has one way to be as wide as that
         count = 1 if len(self.model.free) == 1 else _SEEDS
         for seed in library.seeds(spots, count):
-            yield from _rolled(seed, spots, self.rng)
+            yield from rolled(seed, spots, self.rng)
 
     def _first(self, wanted: _Wanted, seeds: Iterator[Seed]) -> Draft | None:
         """The first seed that leads to a grasp."""
@@ -319,25 +321,6 @@ def _best_of_each(drafts: list[Draft]) -> list[Draft]:
     for draft in sorted(drafts, key=worth, reverse=True):
         families.setdefault(draft.features, []).append(draft)
     return [draft for family in families.values() for draft in family[:JUDGED]]
-
-
-def _rolled(seed: Seed, spots: Spots, rng: np.random.Generator) -> Iterator[Seed]:
-    """The seed turned about the line between two spots, in steps that begin at random."""
-    axis = spots.points[1] - spots.points[0]
-    axis = axis / np.linalg.norm(axis)
-    middle = spots.points.mean(axis=0)
-    start = rng.random() * 2 * np.pi
-    for step in range(_ROLLS):
-        # halves first, then quarters: what is in the way on one side is often not on the other
-        angle = start + 2 * np.pi * ((step * 3) % _ROLLS) / _ROLLS
-        turn = _about(axis, angle)
-        yield Seed(seed.tips, seed.q, composed(Pose(turn, middle - turn @ middle), seed.X_PH), seed.off)
-
-
-def _about(axis: np.ndarray, angle: float) -> np.ndarray:
-    """The rotation about a unit axis (Rodrigues)."""
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def _in_turns(lists: list[list[_Wanted]]) -> Iterator[_Wanted]:

@@ -26,7 +26,7 @@ from fixture_design.grasp.hand import Fingertip
 from fixture_design.grasp.link_geometry import Ball, LinkGeometry
 from fixture_design.grasp.posture import Posture
 from fixture_design.layout import Element, Layout, LineTip, PadTip, Part, PointTip, Pose, SoftTip, SphereTip, Tip
-from fixture_design.tolerances import FINGER_GAP, FLAT_ENOUGH
+from fixture_design.tolerances import FINGER_GAP, FLAT_ENOUGH, NEARLY_ACROSS
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +169,7 @@ def _kinds(tip: Fingertip, X_WL: Pose, part: Part, surface: SolidSurface, p_PC: 
         return [point]
     axis = part.pose.vectors(shape.shape.axis[None])[0]
     cosine, sine = abs(axis @ along), float(np.linalg.norm(np.cross(axis, along)))
-    length = min(tip.pad[0] / max(cosine, 1e-9), tip.pad[1] / max(sine, 1e-9))
+    length = min(tip.pad[0] / max(cosine, NEARLY_ACROSS), tip.pad[1] / max(sine, NEARLY_ACROSS))
     return [LineTip(length, read_only(axis)), point]
 
 

@@ -56,6 +56,22 @@ def test_jacobians_are_what_moving_a_joint_a_little_does():
         np.testing.assert_allclose(jacobian[:, column], change, atol=1e-5)
 
 
+def test_spin_jacobians_are_what_moving_a_joint_a_little_does():
+    """R(q + dq) R(q)^T is I + [w dq]x, up to squares; and sliding jaws do not spin."""
+    three, step = model_of(THREE), 1e-6
+    q = three.completed(three.middle[three.free] + 0.1)
+    link = three.fingertips[1].link
+    spin, before = three.spin_jacobian(q, link), three.poses(q)[link].rotation
+    assert np.abs(spin).max() > 0.5
+    for column in range(len(three.free)):
+        moved = q.copy()
+        moved[three.free[column]] += step
+        turn = (three.poses(moved)[link].rotation @ before.T - np.eye(3)) / step
+        np.testing.assert_allclose(spin[:, column], [turn[2, 1], turn[0, 2], turn[1, 0]], atol=1e-5)
+    jaw = model_of(JAW)
+    np.testing.assert_allclose(jaw.spin_jacobian(jaw.middle, "left_pad"), 0.0, atol=1e-15)
+
+
 @pytest.mark.parametrize(
     ("wrong", "right", "problem"),
     [
