@@ -224,5 +224,17 @@ LEAST_FRICTION = 1e-7
 #: Fingertips and links this near to the part touch it [m]: joint positions and tip radii are not known better.
 FINGER_GAP = 1e-4
 
+#: Joint positions this much outside of their range are in it [rad or m]: inverse kinematics keeps to it so far.
+JOINT_SLACK = 1e-6
+
+#: A direction is taken for an axis of its link if its cosine to that is this near to 1 [-]: rounding of model files.
+NEARLY_ALONG = 1e-6
+
+#: Directions whose cosine is below this are at right angles [-]: rounding.
+NEARLY_ACROSS = 1e-9
+
+#: Cost of a newton beside the torques that are made least [-]: far below them, so that it only settles ties.
+LEAST_COST = 1e-6
+
 #: A pad lies flat if it is tilted by less than this [rad]: its skin gives way that much.
 FLAT_ENOUGH = 0.02

@@ -30,7 +30,7 @@ def grasp(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Layout file of the best grasp to write.")] = None,
     scale: Annotated[float, typer.Option(help="Factor that makes a part file's vertices metres.")] = 1.0,
     most: Annotated[int, typer.Option(help="Grasps wanted, on different features.", min=1)] = 5,
-    tries: Annotated[int, typer.Option(help="Places tried at most.", min=1)] = 160,
+    tries: Annotated[int, typer.Option(help="Places looked at at most.", min=1)] = 160,
     seed: Annotated[int, typer.Option(help="Of the random numbers.", min=0)] = 0,
     table: Annotated[float | None, typer.Option(help="Height z of a table that the hand stays above [m].")] = None,
     load: Annotated[str | None, typer.Option(help=_LOAD, metavar="NUMBERS")] = None,
@@ -54,14 +54,17 @@ def grasp(
     from fixture_design.io import read_hand  # noqa: PLC0415 - pulls in the hands
 
     wrench = None if load is None else _load(load)
+    if table is not None and not np.isfinite(table):
+        raise InputError("--table cannot be used", found=f"{table:g}", expected="a height in metres")
+    given, X_WH = _joints(joint or []), _pose(pose)
     read = read_hand(hand)
     held_part = _part(part, scale)
-    for path in (out, html):
-        _check_target(path, (hand, part, read.model, held_part.file))
+    _check_target(out, (hand, part, read.model, held_part.file))
+    _check_target(html, (hand, part, read.model, held_part.file), out)
     with interruptible() as cancelled:
         try:
             if joint or pose is not None:
-                result = _judged(read, held_part, joint or [], pose, wrench)
+                result = _judged(read, held_part, given, X_WH, wrench, table)
             else:
                 from fixture_design.grasp.search import Search  # noqa: PLC0415 - slow, and only for a search
                 from fixture_design.grasp.search import grasp as search_grasps  # noqa: PLC0415 - likewise
@@ -95,17 +98,29 @@ def _part(path: Path, scale: float) -> Part:
     return layout.part
 
 
-def _judged(hand: Hand, part: Part, joints: Sequence[str], pose: str | None, load: np.ndarray | None) -> GraspResult:
+def _judged(
+    hand: Hand, part: Part, joints: dict[str, float], X_WH: Pose, load: np.ndarray | None, table: float | None
+) -> GraspResult:
     """The one grasp that the hand makes where it is."""
     from fixture_design.geometry import load_part  # noqa: PLC0415 - Drake and trimesh
-    from fixture_design.grasp import GraspResult, Posture, grasp_at, load_hand  # noqa: PLC0415 - likewise
+    from fixture_design.grasp import Posture, load_hand, posed  # noqa: PLC0415 - likewise
 
     model = load_hand(hand)
-    given = dict(_assignment(text) for text in joints)
+    return posed(Posture(model, model.positions(joints), X_WH), part, load_part(part), load, table)
+
+
+def _joints(texts: Sequence[str]) -> dict[str, float]:
+    given: dict[str, float] = {}
+    for name, value in map(_assignment, texts):
+        if name in given:
+            raise InputError("--joint is given twice", found=f"{name}={value:g}", expected="each joint once")
+        given[name] = value
+    return given
+
+
+def _pose(pose: str | None) -> Pose:
     numbers = [0.0] * 6 if pose is None else _numbers(pose, (3, 6), "--pose")
-    X_WH = Pose.from_xyz_rpy(numbers[:3], numbers[3:] or [0.0, 0.0, 0.0])
-    found = grasp_at(Posture(model, model.positions(given), X_WH), part, load_part(part), load)
-    return GraspResult(found.closed, (found,), notes=model.notes)
+    return Pose.from_xyz_rpy(numbers[:3], numbers[3:] or [0.0, 0.0, 0.0])
 
 
 def _assignment(text: str) -> tuple[str, float]:
@@ -132,10 +147,12 @@ def _numbers(text: str, counts: tuple[int, ...], option: str) -> list[float]:
     return numbers
 
 
-def _check_target(path: Path | None, inputs: Sequence[Path | None]) -> None:
-    """An output must not be one of the inputs, and its folder must be there, before any work is done."""
+def _check_target(path: Path | None, inputs: Sequence[Path | None], other: Path | None = None) -> None:
+    """An output must not be one of the inputs or another output, and its folder must be there, before any work."""
     if path is None:
         return
+    if other is not None and other.resolve() == path.resolve():
+        raise FileFormatError("--out and --html are the same file", source=path, expected="two names")
     if any(given is not None and given.resolve() == path.resolve() for given in inputs):
         raise FileFormatError("this would overwrite an input", source=path, expected="another name")
     if not path.absolute().parent.is_dir():

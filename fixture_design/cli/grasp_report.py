@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fixture_design.cli.messages import printable
+from fixture_design.io.pose_angles import roll_pitch_yaw
 from fixture_design.layout import Answer
 
 if TYPE_CHECKING:
-    from fixture_design.grasp import Grasp, GraspResult
+    from fixture_design.grasp import Grasp, GraspResult, Posture
 
 #: Regions told before it says "and so many more".
 _REGIONS = 8
+
+#: Digits with which positions can be typed again: well below what fingers touch within.
+_DIGITS = 10
 
 
 def grasps_in_words(result: GraspResult) -> Iterator[str]:
@@ -41,8 +45,11 @@ def grasps_in_words(result: GraspResult) -> Iterator[str]:
 def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
     on = f" on {', '.join(grasp.features)}" if grasp.features else ""
     yield f"{number}. {grasp.posture.model.name}{on}: force closed {grasp.closed}"
+    if grasp.doubt is not None:
+        yield f"   undecided: {grasp.doubt}"
     xyz = ", ".join(f"{value * 1000:.2f}" for value in grasp.posture.X_WH.translation)
     yield f"   hand at ({xyz}) mm; " + ", ".join(f"{n} {v:.4g}" for n, v in grasp.posture.positions().items())
+    yield f"   as options: {as_options(grasp.posture)}"
     epsilon = "not computed" if grasp.quality.epsilon is None else f"{grasp.quality.epsilon:.3g}"
     robust = "" if grasp.robust is None else f", closed at {grasp.robust:.0%} of pose errors"
     yield f"   least weight {grasp.quality.least_weight:.3g}, epsilon {epsilon}{robust}"
@@ -54,3 +61,12 @@ def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
         torques = ", ".join(f"{name} {value:.3g}" for name, value in grasp.held.torques.items())
         yield f"   holds the load with {torques} (N m, or N of joints that slide)"
     yield from (f"   note: {note}" for note in grasp.notes)
+
+
+def as_options(posture: Posture) -> str:
+    """The hand's place as the command takes it: joints that follow others go without saying."""
+    model = posture.model
+    joints = (f"--joint {model.joints[k].name}={posture.q[k] + 0.0:.{_DIGITS}g}" for k in model.free.tolist())
+    pose = [*posture.X_WH.translation, *roll_pitch_yaw(posture.X_WH)]
+    # with "=", as the first number may begin with a minus
+    return " ".join([*joints, "--pose=" + ",".join(f"{value + 0.0:.{_DIGITS}g}" for value in pose)])

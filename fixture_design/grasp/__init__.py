@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fixture_design.grasp.hand import Fingertip, Hand, HandError, JointRule
-    from fixture_design.grasp.hand_model import HandModel, load_hand
+    from fixture_design.grasp.hand_loading import load_hand
+    from fixture_design.grasp.hand_model import HandModel
     from fixture_design.grasp.hybrid import hybrid_sets
-    from fixture_design.grasp.judging import grasp_at
+    from fixture_design.grasp.placed import grasp_at, posed
     from fixture_design.grasp.posture import Posture
     from fixture_design.grasp.quality import Quality
     from fixture_design.grasp.result import Grasp, GraspResult
@@ -35,9 +36,10 @@ _HOME = {
     "Search": "search",
     "Touching": "touching",
     "grasp": "search",
-    "grasp_at": "judging",
+    "grasp_at": "placed",
     "hybrid_sets": "hybrid",
-    "load_hand": "hand_model",
+    "load_hand": "hand_loading",
+    "posed": "placed",
 }
 
 __all__ = [
@@ -57,6 +59,7 @@ __all__ = [
     "grasp_at",
     "hybrid_sets",
     "load_hand",
+    "posed",
 ]
 
 

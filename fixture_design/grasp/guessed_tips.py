@@ -17,6 +17,7 @@ from fixture_design.arrays import Point, read_only
 from fixture_design.geometry.facets import Facet
 from fixture_design.grasp.hand import Fingertip
 from fixture_design.grasp.link_geometry import Ball, LinkGeometry
+from fixture_design.tolerances import NEARLY_ACROSS, NEARLY_ALONG
 
 if TYPE_CHECKING:
     from fixture_design.grasp.hand_model import HandModel
@@ -208,7 +209,7 @@ def _on_axis(direction: Point) -> Point:
     axis = int(np.argmax(np.abs(direction)))
     snapped = np.zeros(3)
     snapped[axis] = np.sign(direction[axis])
-    return snapped if abs(direction[axis]) > 1 - 1e-6 else direction / np.linalg.norm(direction)
+    return snapped if abs(direction[axis]) > 1 - NEARLY_ALONG else direction / np.linalg.norm(direction)
 
 
 def _flat(link: LinkGeometry, towards: Point) -> Fingertip | None:
@@ -257,7 +258,7 @@ def _pad(link: LinkGeometry, points: np.ndarray, facing: Point) -> Fingertip:
 def _across(facing: Point, flat: np.ndarray) -> Point:
     """An axis of the link across ``facing`` if there is one, else the longest extent of the points."""
     for axis in np.eye(3):
-        if abs(axis @ facing) < 1e-9:
+        if abs(axis @ facing) < NEARLY_ACROSS:
             return axis
     longest = np.linalg.svd(flat - flat.mean(axis=0))[2][0]
     longest = longest - (longest @ facing) * facing

@@ -135,23 +135,6 @@ def with_strength(grasp: Grasp, load: Vector | None) -> Grasp:
     return replace(grasp, weakest=drives.weakest(), held=held, notes=notes)
 
 
-def grasp_at(posture: Posture, part: Part, geometry: PartGeometry, load: Vector | None = None) -> Grasp:
-    """The grasp that a hand makes at given joint positions and pose, whatever it is worth.
-
-    What overlaps is said in its notes.
-
-    Raises:
-        ContactError: nothing touches.
-    """
-    site = Site.of(part, geometry)
-    found = touching(posture, part, geometry)
-    contacts = contacts_of(found.layout, geometry)
-    measured = quality(contacts.contacts, contacts.report.reference, contacts.report.length)
-    inside = tuple(f"{name} is {depth * 1000:.3g} mm inside the part" for name, depth in found.overlaps.items())
-    draft = Draft(posture, replace(found, notes=(*found.notes, *inside)), contacts, (), measured)
-    return with_strength(judged(draft, site, PoseError(), 0), load)
-
-
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:
     """Closed ones first, then by robustness, in steps of a tenth, then by epsilon."""
 

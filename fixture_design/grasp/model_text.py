@@ -57,11 +57,12 @@ def model_text(file: Path, folder: Path, dynamic: bool = False) -> ModelText:
     root = _sdf_root(file) if kind == "sdf" else robot_of(file)
     try:
         rules = dict(map(_rule, _joints(root)))
+        _drop(root, _DROPPED if dynamic else (*_DROPPED, *_DYNAMIC))
+        scaled = list(_meshes(root, kind))
     except FileFormatError as error:
         raise error.within(file) from error
-    _drop(root, _DROPPED if dynamic else (*_DROPPED, *_DYNAMIC))
     meshes: dict[str, RawMesh] = {}
-    for number, (element, name, scale) in enumerate(_meshes(root, kind), start=1):
+    for number, (element, name, scale) in enumerate(scaled, start=1):
         place = f"mesh {name!r}"
         raw = read_mesh(resolve(name, file, place), place, file)
         vertices = raw.vertices * scale
@@ -129,7 +130,19 @@ def _meshes(root: ElementTree.Element, kind: str) -> Iterator[tuple[ElementTree.
     for mesh in root.iter("mesh"):
         name = (mesh.get("filename") if kind == "urdf" else mesh.findtext("uri")) or ""
         text = (mesh.get("scale") if kind == "urdf" else mesh.findtext("scale")) or "1 1 1"
-        yield mesh, name.strip(), np.array([float(word) for word in text.split()]) * np.ones(3)
+        yield mesh, name.strip(), _scale(text, f"mesh {name.strip()!r}")
+
+
+def _scale(text: str, place: str) -> np.ndarray:
+    """One factor for all axes or one each, finite and not zero, shape (3,)."""
+    expected = "one number or three, none of them 0"
+    try:
+        factors = np.array([float(word) for word in text.split()])
+    except ValueError as cause:
+        raise FileFormatError("'scale' cannot be read", place=place, found=repr(text), expected=expected) from cause
+    if len(factors) not in (1, 3) or not np.isfinite(factors).all() or not factors.all():
+        raise FileFormatError("'scale' cannot be used", place=place, found=repr(text), expected=expected)
+    return factors * np.ones(3)
 
 
 def _point_to(mesh: ElementTree.Element, target: Path, kind: str) -> None:

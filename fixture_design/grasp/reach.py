@@ -17,7 +17,8 @@ import numpy as np
 from fixture_design.arrays import Weights, read_only
 from fixture_design.geometry.distance import guarded
 from fixture_design.grasp.hand import Fingertip
-from fixture_design.grasp.hand_model import HandModel, built_plant
+from fixture_design.grasp.hand_loading import built_plant
+from fixture_design.grasp.hand_model import HandModel
 from fixture_design.grasp.library import Seed, Spots
 from fixture_design.grasp.model_text import model_text
 from fixture_design.layout import Pose

@@ -43,6 +43,12 @@ class Grasp:
         """Whether it is force closed."""
         return self.verdict.satisfied or Answer.UNDECIDED
 
+    @property
+    def doubt(self) -> str | None:
+        """Why that is undecided, where it is and the verdict says so."""
+        findings = (found for group in self.verdict.groups.values() for found in group.findings.values())
+        return next((found.reason for found in findings if found.answer is Answer.UNDECIDED and found.reason), None)
+
 
 @dataclass(frozen=True, eq=False)
 class FacingRegion:
@@ -50,7 +56,7 @@ class FacingRegion:
 
     Attributes:
         pairs: how many antipodal pairs of sampled points there are.  width: from and to [m].
-        outcome: "closed", or why not.
+        outcome: "closed", "undecided", or why not.
     """
 
     features: tuple[str, str]

@@ -16,17 +16,19 @@ import numpy as np
 
 from fixture_design.arrays import Vector
 from fixture_design.contacts import Scale
-from fixture_design.errors import UnsupportedError
+from fixture_design.errors import InputError, UnsupportedError
 from fixture_design.geometry import PartGeometry, SurfacePoints, load_part
 from fixture_design.geometry.urdf_tree import composed
 from fixture_design.grasp.hand import Hand
-from fixture_design.grasp.hand_model import HandModel, load_hand
+from fixture_design.grasp.hand_loading import load_hand
+from fixture_design.grasp.hand_model import HandModel
 from fixture_design.grasp.judging import Draft, Site, better_first, drafted, judged, obstacle, with_strength
 from fixture_design.grasp.library import Library, Seed, Spots
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.reach import Reach
 from fixture_design.grasp.result import FacingRegion, Grasp, GraspResult
 from fixture_design.grasp.robustness import PoseError
+from fixture_design.grasp.rolling import rolled
 from fixture_design.grasp.skin import Skin
 from fixture_design.grasp.spots import (
     Region,
@@ -38,7 +40,7 @@ from fixture_design.grasp.spots import (
     spots_at,
     spread,
 )
-from fixture_design.layout import Answer, Part, Pose
+from fixture_design.layout import Answer, Part
 
 #: Words and how much is done, 0 to 1.
 Progress = Callable[[str, float], None]
@@ -49,8 +51,8 @@ TRIES, DRAFTS, JUDGED = 160, 3, 2
 #: Failures in a row after which a family is given up.
 PATIENCE = 24
 
-#: Seeds tried for one pair of points; two fingertips leave the hand free to roll: so many angles.
-_SEEDS, _ROLLS = 3, 8
+#: Seeds tried for one pair of points.
+_SEEDS = 3
 
 #: Sets whose seeds are looked up, so many each; and those of all seeds that are compared by what runs into the part.
 _SETS, _LOOKED_UP, _COMPARED = 1500, 4, 600
@@ -65,11 +67,15 @@ class Search:
 
     Attributes:
         most: grasps wanted, one a family.
-        tries: sets of points tried at most.
+        tries: sets of points looked at at most; those of families that are full or given up count.
         seed: of the random numbers.
         table: height of a table in W [m]; None without one.
         load: wrench on the part about its centre of mass that the drives are to hold [N, N m]; None without one.
         error: of the part's pose, for robustness.
+
+    Raises:
+        InputError: less than one grasp or try, a negative seed, a table or load that is not finite, or a load that is
+            no wrench.
     """
 
     most: int = 5
@@ -79,6 +85,16 @@ class Search:
     load: Vector | None = None
     error: PoseError = field(default_factory=PoseError)
 
+    def __post_init__(self) -> None:
+        for name, least in (("most", 1), ("tries", 1), ("seed", 0)):
+            if getattr(self, name) < least:
+                raise InputError(f"{name!r} is too small", found=str(getattr(self, name)), expected=f">= {least}")
+        if self.table is not None and not np.isfinite(self.table):
+            raise InputError("'table' is no height", found=str(self.table), expected="a finite number [m]")
+        if self.load is not None and (np.shape(self.load) != (6,) or not np.isfinite(self.load).all()):
+            expected = "six finite numbers: force [N] and moment [N m]"
+            raise InputError("'load' is no wrench", found=str(self.load), expected=expected)
+
 
 @dataclass(frozen=True, eq=False)
 class _Wanted:
@@ -87,6 +103,19 @@ class _Wanted:
     spots: Spots
     features: tuple[str, ...]
     seeds: tuple[Seed, ...] = ()
+
+
+def check_kinds(hand: object, part: object) -> None:
+    """Names of files, as the command line takes them, are neither hands nor parts here.
+
+    Raises:
+        InputError: the one is no hand, or the other no part.
+    """
+    if not isinstance(part, Part):
+        expected = "a Part, such as fd.read_layout(file).part"
+        raise InputError("this is no part", found=repr(part), expected=expected)
+    if not isinstance(hand, Hand | HandModel):
+        raise InputError("this is no hand", found=repr(hand), expected="fd.read_hand(file)")
 
 
 def grasp(
@@ -106,14 +135,17 @@ def grasp(
         UnsupportedError: a planar part.
         InputError: the hand or the part cannot be used.
     """
+    check_kinds(hand, part)
     if part.kind == "polygon":
         raise UnsupportedError("hands are spatial, and this part is planar", expected="a layout with role `finger`")
     search = search or Search()
     model = load_hand(hand) if isinstance(hand, Hand) else hand
     count = len(model.fingertips)
     if count < 2:
-        reason = f"{model.name} has {count} fingertip{'s' if count != 1 else ''}: one finger pushes, and holds nothing"
-        return GraspResult(Answer.NO, (), reason=reason, notes=model.notes)
+        # the palm or another link may hold against it, so this is no proof that there is no grasp
+        fingers = "one fingertip" if count else "no fingertips"
+        reason = f"{model.name} has {fingers}, and only grasps with two or more are looked for"
+        return GraspResult(Answer.UNDECIDED, (), reason=reason, notes=model.notes)
     geometry = geometry or load_part(part)
     run = _Run(model, Site.of(part, geometry, search.table), search, progress, cancelled)
     return run.with_sets() if count > 2 else run.with_pairs()
@@ -129,6 +161,7 @@ class _Run:
         self.progress, self.cancelled = progress, cancelled
         self.rng = np.random.default_rng(search.seed)
         self.outcomes: Counter[str] = Counter()
+        self.answers: dict[tuple[str, ...], Answer] = {}
         self.points = spread(site.geometry, search.seed)
         self.reach = Reach.of(model)
         self.friction = min(model.hand.friction if tip.friction is None else tip.friction for tip in model.fingertips)
@@ -184,7 +217,9 @@ class _Run:
             return GraspResult(Answer.UNDECIDED, (), facing, {}, reason, self.model.notes)
         drafts = self._tried(library, _in_turns(wanted))
         result = self._result(drafts)
-        done = {tuple(draft.features): "closed" for draft in drafts}
+        done = {
+            features: "closed" if answer is Answer.YES else str(answer) for features, answer in self.answers.items()
+        }
         narrow_ones = {region.features for region in narrow}
         facing = tuple(
             _outcome(region, done, "too wide" if region.features in narrow_ones else "not reached")
@@ -223,7 +258,7 @@ class _Run:
         # a hand with one joint has one way to be as wide as that
         count = 1 if len(self.model.free) == 1 else _SEEDS
         for seed in library.seeds(spots, count):
-            yield from _rolled(seed, spots, self.rng)
+            yield from rolled(seed, spots, self.rng)
 
     def _first(self, wanted: _Wanted, seeds: Iterator[Seed]) -> Draft | None:
         """The first seed that leads to a grasp."""
@@ -256,6 +291,7 @@ class _Run:
         best: dict[tuple[str, ...], Grasp] = {}
         for one in better_first(judged_ones):
             best.setdefault(one.features, one)
+        self.answers = {features: one.closed for features, one in best.items()}
         grasps = tuple(with_strength(one, self.search.load) for one in list(best.values())[: self.search.most])
         tried = dict(self.outcomes.most_common())
         holding = [g for g in grasps if g.closed is Answer.YES and (self.search.load is None or g.held is not None)]
@@ -285,25 +321,6 @@ def _best_of_each(drafts: list[Draft]) -> list[Draft]:
     for draft in sorted(drafts, key=worth, reverse=True):
         families.setdefault(draft.features, []).append(draft)
     return [draft for family in families.values() for draft in family[:JUDGED]]
-
-
-def _rolled(seed: Seed, spots: Spots, rng: np.random.Generator) -> Iterator[Seed]:
-    """The seed turned about the line between two spots, in steps that begin at random."""
-    axis = spots.points[1] - spots.points[0]
-    axis = axis / np.linalg.norm(axis)
-    middle = spots.points.mean(axis=0)
-    start = rng.random() * 2 * np.pi
-    for step in range(_ROLLS):
-        # halves first, then quarters: what is in the way on one side is often not on the other
-        angle = start + 2 * np.pi * ((step * 3) % _ROLLS) / _ROLLS
-        turn = _about(axis, angle)
-        yield Seed(seed.tips, seed.q, composed(Pose(turn, middle - turn @ middle), seed.X_PH), seed.off)
-
-
-def _about(axis: np.ndarray, angle: float) -> np.ndarray:
-    """The rotation about a unit axis (Rodrigues)."""
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def _in_turns(lists: list[list[_Wanted]]) -> Iterator[_Wanted]:

@@ -30,6 +30,9 @@ from fixture_design.tolerances import DEFAULT, FLAT_ENOUGH
 #: About so many points are spread over the surface.
 POINTS = 400
 
+#: Lines begin this far inside of the part, relative to its half diagonal [-]: clear of the facet that they start at.
+_BEHIND = 1e-3
+
 #: How far from sharp edges, relative to the part's half diagonal, tried one after the other [-].
 _MARGINS = (0.08, 0.03, 0.0)
 
@@ -74,7 +77,7 @@ def opposite(geometry: PartGeometry, points: SurfacePoints) -> tuple[SurfacePoin
     Behind a point there may be several, after holes and slots; each is one end of a pair.
     """
     reach = 2.2 * geometry.half_diagonal
-    starts = points.points - 1e-3 * geometry.half_diagonal * points.normals
+    starts = points.points - _BEHIND * geometry.half_diagonal * points.normals
     lines = np.stack([starts, points.points - reach * points.normals], axis=1)
     line, triangle, at = crossings(lines, geometry.vertices[geometry.triangles])
     facets = geometry.facet_of_triangle[triangle]

@@ -22,6 +22,7 @@ from fixture_design.arrays import Point, Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.wrenches import Pushes, pushes_of
+from fixture_design.tolerances import LEAST_COST
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +116,7 @@ class Drives:
 
         upper = np.vstack([np.hstack([side * shares, -np.ones((len(shares), 1))]) for side in (1.0, -1.0)])
         # a little of the forces themselves, so that nothing squeezes for nothing
-        cost = np.append(np.full(count, 1e-6), 1.0)
+        cost = np.append(np.full(count, LEAST_COST), 1.0)
         equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
         found = linprog(cost, upper, np.zeros(len(upper)), equalities, -load, bounds=(0, None), method="highs")
         if found.x is None or (limited.any() and found.x[-1] > 1):

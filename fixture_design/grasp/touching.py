@@ -14,7 +14,7 @@ import numpy as np
 
 from fixture_design.arrays import Point, read_only
 from fixture_design.contacts import Contact, unit_normal
-from fixture_design.errors import GeometryError, UnsupportedError, format_length
+from fixture_design.errors import GeometryError, UnsupportedError
 from fixture_design.geometry import PartGeometry
 from fixture_design.geometry.bodies import moved_geometry, touches_between
 from fixture_design.geometry.contact import contacts_on
@@ -26,7 +26,7 @@ from fixture_design.grasp.hand import Fingertip
 from fixture_design.grasp.link_geometry import Ball, LinkGeometry
 from fixture_design.grasp.posture import Posture
 from fixture_design.layout import Element, Layout, LineTip, PadTip, Part, PointTip, Pose, SoftTip, SphereTip, Tip
-from fixture_design.tolerances import FINGER_GAP, FLAT_ENOUGH
+from fixture_design.tolerances import FINGER_GAP, FLAT_ENOUGH, NEARLY_ACROSS
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,18 +69,17 @@ def touching(posture: Posture, part: Part, geometry: PartGeometry, gap: float = 
             elements.append(element)
             links[element.name] = tip.link
     contacts: list[Contact] = []
+    of_tips = set(links.values())  # their contacts are the elements, but no more of them may be in the part
     for name, link in posture.model.links.items():
-        if name in links.values():
-            continue
         X_PL = composed(part.pose.inverse(), poses[name])
         found = clearance(link, X_PL, features_of(geometry).solid, gap)
         if found.distance < -gap:
             overlaps[name] = -found.distance
-        elif found.distance <= gap:
-            own = _link_contacts(link, X_PL, part, geometry, posture.model.hand.friction, gap)
+        elif found.distance <= gap and name not in of_tips:
+            own, problem = _link_contacts(link, X_PL, part, geometry, posture.model.hand.friction, gap)
             links |= {contact.name: name for contact in own}
             contacts += own
-            notes += [] if own else [f"link {name!r} touches in no way that contacts can be made of"]
+            notes += [] if own else [f"link {name!r} touches in no way that contacts can be made of{problem}"]
     layout = Layout(
         name=f"{posture.model.name} on {part.name}",
         part=part,
@@ -170,21 +169,24 @@ def _kinds(tip: Fingertip, X_WL: Pose, part: Part, surface: SolidSurface, p_PC: 
         return [point]
     axis = part.pose.vectors(shape.shape.axis[None])[0]
     cosine, sine = abs(axis @ along), float(np.linalg.norm(np.cross(axis, along)))
-    length = min(tip.pad[0] / max(cosine, 1e-9), tip.pad[1] / max(sine, 1e-9))
+    length = min(tip.pad[0] / max(cosine, NEARLY_ACROSS), tip.pad[1] / max(sine, NEARLY_ACROSS))
     return [LineTip(length, read_only(axis)), point]
 
 
 def _link_contacts(
     link: LinkGeometry, X_PL: Pose, part: Part, geometry: PartGeometry, friction: float, gap: float
-) -> list[Contact]:
-    """The contacts of a link that is no fingertip, as rigid bodies have them, in W; given outright in the layout."""
+) -> tuple[list[Contact], str]:
+    """The contacts of a link that is no fingertip, as rigid bodies have them, in W; given outright in the layout.
+
+    And where there are none because they are of a kind that nothing here knows, that in words.
+    """
     placed = moved_geometry(link.geometry, X_PL)
     try:
         touches = touches_between(features_of(geometry), Features(placed), gap)
-    except UnsupportedError:  # noted by the caller: no contacts
-        return []
+    except UnsupportedError as error:
+        return [], f": {error.problem}"
     points = part.pose.points(np.array([touch.point for touch in touches]).reshape(-1, 3))
-    return [
+    own = [
         Contact(
             f"{link.name} {number}",
             "finger",
@@ -194,8 +196,4 @@ def _link_contacts(
         )
         for number, (point, touch) in enumerate(zip(points, touches, strict=True), start=1)
     ]
-
-
-def overlap_in_words(overlaps: Mapping[str, float]) -> str:
-    """ "palm (2 mm), left (0.3 mm)"."""
-    return ", ".join(f"{name} ({format_length(depth)})" for name, depth in overlaps.items())
+    return own, ""

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fixture_design.arrays import Point, read_only
+from fixture_design.errors import FileFormatError
 from fixture_design.grasp.hand import Fingertip, Hand, JointRule
 from fixture_design.io.documents import read_document
 from fixture_design.io.hand_records import FingertipRecord, HandRecord, JointRecord
@@ -17,8 +18,11 @@ from fixture_design.io.plain_words import validated
 from fixture_design.io.problems import Problem, content_error, show
 from fixture_design.io.schema_key import require_schema
 
-#: Endings of model files; all others are hand files.
+#: Endings of model files.
 MODEL_ENDINGS = (".urdf", ".sdf")
+
+#: Endings of hand files.
+_HAND_ENDINGS = (".yaml", ".yml", ".json")
 
 #: A pad's `along` is this near to across `facing` [-], as a cosine.
 _ACROSS = 1e-6
@@ -31,13 +35,16 @@ def read_hand(path: str | Path) -> Hand:
     the hand is loaded.
 
     Raises:
-        FileFormatError: the file cannot be read, does not parse or is no hand file.
+        FileFormatError: the file cannot be read, does not parse or is no hand file by its name or content.
     """
     path = Path(path)
     if path.suffix.lower() in MODEL_ENDINGS:
-        beside = [path.with_suffix(f".hand{ending}") for ending in (".yaml", ".yml", ".json")]
+        beside = [path.with_suffix(f".hand{ending}") for ending in _HAND_ENDINGS]
         found = next((file for file in beside if file.is_file()), None)
         return Hand(path.stem, path.absolute()) if found is None else read_hand(found)
+    if path.is_file() and path.suffix.lower() not in _HAND_ENDINGS:
+        expected = f"a hand file ({', '.join(_HAND_ENDINGS)}), or a model ({', '.join(MODEL_ENDINGS)})"
+        raise FileFormatError("this is not a hand", source=path, expected=expected)
     document = read_document(path)
     require_schema(document, "hand")
     record = validated(HandRecord, document)

@@ -9,6 +9,7 @@ a while along each axis. The part is held if it hardly moves: how far it may, `S
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -134,11 +135,10 @@ class _World:
         plant, scene = AddMultibodyPlantSceneGraph(builder, shake.step)
         plant.set_contact_model(ContactModel.kHydroelasticWithFallback)
         plant.set_discrete_contact_approximation(DiscreteContactApproximation.kSap)
-        posture, friction = grasp.posture, grasp.posture.model.hand.friction
+        posture, frictions = grasp.posture, _frictions(grasp.posture.model)
         config = SceneGraphConfig()
         properties = config.default_proximity_properties
         properties.compliance_type, properties.hydroelastic_modulus = "compliant", shake.modulus
-        properties.static_friction = properties.dynamic_friction = friction
         properties.resolution_hint = 0.005
         scene.set_config(config)
         make: Any = RigidTransform
@@ -146,7 +146,10 @@ class _World:
         with tempfile.TemporaryDirectory() as folder:
             text = model_text(posture.model.hand.model, Path(folder), dynamic=True)
             (hand,) = Parser(plant).AddModels(text.file)
-            body = _add_part(plant, geometry, shake, friction, Path(folder))
+            _rub(plant, scene, hand, frictions, posture.model.hand.friction)
+            body = _add_part(
+                plant, geometry, shake, max(posture.model.hand.friction, *frictions.values()), Path(folder)
+            )
             base = _root(plant, hand)
             X_WH = make(turn(posture.X_WH.rotation), posture.X_WH.translation)
             plant.WeldFrames(plant.world_frame(), base.body_frame(), X_WH)
@@ -185,6 +188,37 @@ class _World:
         center = before.translation()
         turned = before.rotation().inverse().multiply(after.rotation()).ToAngleAxis().angle()
         return float(np.linalg.norm(after.translation() - center)), float(abs(turned))
+
+
+def _frictions(model: HandModel) -> dict[str, float]:
+    """The coefficient of each link with fingertips; the least of them where they differ."""
+    found: dict[str, float] = {}
+    for tip in model.fingertips:
+        friction = model.hand.friction if tip.friction is None else tip.friction
+        found[tip.link] = min(friction, found.get(tip.link, friction))
+    return found
+
+
+def _rub(plant: Any, scene: Any, hand: Any, frictions: Mapping[str, float], usual: float) -> None:
+    """Gives the hand's shapes the friction with which Drake combines to that of the layout's contacts.
+
+    Drake's parser gives every shape a coefficient of its own, which defaults of the scene do not replace, and combines
+    two of them, a of a shape and m of the part, to 2 a m / (a + m). With m the largest of all, a = f m / (2 m - f)
+    makes that f.
+    """
+    from pydrake.geometry import RoleAssign
+    from pydrake.multibody.plant import CoulombFriction
+
+    most = max(usual, *frictions.values())
+    inspector = scene.model_inspector()
+    for index in plant.GetBodyIndices(hand):
+        body = plant.get_body(index)
+        wanted = frictions.get(body.name(), usual)
+        own = wanted * most / (2 * most - wanted) if most else 0.0
+        for shape in plant.GetCollisionGeometriesForBody(body):
+            properties = inspector.GetProximityProperties(shape)
+            properties.UpdateProperty("material", "coulomb_friction", CoulombFriction(own, own))
+            scene.AssignRole(plant.get_source_id(), shape, properties, RoleAssign.kReplace)
 
 
 def _root(plant: Any, hand: Any) -> Any:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from fixture_design.cli.program import app
 from fixture_design.errors import InputError
 from fixture_design.io import read_layout
+from fixture_design.layout import Pose
 from tests.grasp.hands import JAW, primitive, public_hand
 
 AT = ["--joint", "left_joint=0.03", "--pose", "0,0,-0.115"]
@@ -45,10 +47,45 @@ def test_a_layout_brings_its_part(cube, tmp_path):
     assert _run(JAW, tmp_path / "g.yaml", *AT).exit_code == 0
 
 
-def test_one_finger_exits_with_1(cube):
+def test_one_finger_exits_with_3(cube):
     found = _run(public_hand("finger_edu").hand.model, cube)
-    assert found.exit_code == 1
-    assert "one finger pushes" in found.stdout
+    assert found.exit_code == 3
+    assert "one fingertip" in found.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["--joint", "left_joint=0.03", "--pose=0,0,-0.08"], 1, "not closed: body is 10 mm inside the part"),
+        (["--joint", "left_joint=0.028", "--pose=0,0,-0.115"], 1, "inside the part"),
+        (["--joint", "left_joint=0.04", "--pose=0,0,-0.115"], 1, "not closed: nothing touches the part"),
+        (["--pose=0,0,-5"], 1, "not closed: nothing touches the part"),
+        ([*AT, "--load", "0,0,-1000"], 3, "undecided: the drives do not hold the load"),
+        ([*AT, "--load", "0,0,-10"], 0, "closed: 1 grasp"),
+        ([*AT, "--table", "0"], 1, "inside the table"),
+        ([*AT, "--table", "-0.2"], 0, "closed: 1 grasp"),
+    ],
+)
+def test_a_hand_where_it_is(cube, arguments, code, words):
+    found = _run(JAW, cube, *arguments)
+    assert found.exit_code == code, found.output
+    assert words in found.stdout
+
+
+def test_what_is_printed_can_be_typed_again(cube):
+    """A pose that is turned about all axes: without its angles nothing would touch."""
+    turned = ["--joint", "left_joint=0.03", "--pose=0.115,0,0,0.3,-1.5707963267948966,0"]
+    first = _run(JAW, cube, *turned)
+    (line,) = [line for line in first.stdout.splitlines() if "as options:" in line]
+    typed = line.partition(":")[2].split()
+    assert typed != turned
+    one, other = (json.loads(_run(JAW, cube, *options, "--json").stdout) for options in (turned, typed))
+    assert one["satisfied"] == other["satisfied"]
+    for here, there in zip(one["grasps"], other["grasps"], strict=True):
+        assert here["positions"] == pytest.approx(there["positions"])
+        poses = [Pose.from_xyz_rpy(found["pose"]["xyz"], found["pose"]["rpy"]) for found in (here, there)]
+        np.testing.assert_allclose(poses[0].rotation, poses[1].rotation, atol=1e-8)
+        np.testing.assert_allclose(poses[0].translation, poses[1].translation, atol=1e-9)
 
 
 def test_a_part_too_large_exits_with_3():
@@ -63,11 +100,21 @@ def test_a_part_too_large_exits_with_3():
         (["--joint", "left_joint"], "--joint cannot be read"),
         (["--pose", "1,2"], "--pose cannot be used"),
         (["--load", "a,b,c"], "--load cannot be read"),
-        (["--pose", "0,0,-5"], "no contacts"),
+        (["--joint", "right_joint=0.045", "--joint", "left_joint=0.03"], "'right_joint' follows 'left_joint'"),
+        (["--joint", "left_joint=0.02", "--joint", "left_joint=0.03"], "--joint is given twice"),
         (["-o", "no/such/folder/g.yaml"], "folder"),
+        (["-o", "g.html", "--html", "./g.html"], "the same file"),
+        (["--table", "nan"], "--table cannot be used"),
     ],
 )
 def test_bad_input_is_one_message(cube, arguments, problem):
     found = _run(JAW, cube, *arguments)
     assert isinstance(found.exception, InputError)
     assert problem in str(found.exception)
+    assert str(cube) not in str(found.exception)  # it is not the part's fault
+
+
+def test_a_part_as_the_hand_is_not_a_hand(tmp_path):
+    file = tmp_path / "part.stl"
+    file.write_bytes(bytes(range(256)))
+    assert "this is not a hand" in str(_run(file, file).exception)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fixture_design.errors import FileFormatError, UnknownNameError
-from fixture_design.grasp import HandError, load_hand
+from fixture_design.grasp import Hand, HandError, JointRule, load_hand
 from fixture_design.io import json_schema, read_hand
 from tests.grasp.hands import JAW, PUBLIC, THREE, model_of, public_hand
 
@@ -56,6 +56,22 @@ def test_jacobians_are_what_moving_a_joint_a_little_does():
         np.testing.assert_allclose(jacobian[:, column], change, atol=1e-5)
 
 
+def test_spin_jacobians_are_what_moving_a_joint_a_little_does():
+    """R(q + dq) R(q)^T is I + [w dq]x, up to squares; and sliding jaws do not spin."""
+    three, step = model_of(THREE), 1e-6
+    q = three.completed(three.middle[three.free] + 0.1)
+    link = three.fingertips[1].link
+    spin, before = three.spin_jacobian(q, link), three.poses(q)[link].rotation
+    assert np.abs(spin).max() > 0.5
+    for column in range(len(three.free)):
+        moved = q.copy()
+        moved[three.free[column]] += step
+        turn = (three.poses(moved)[link].rotation @ before.T - np.eye(3)) / step
+        np.testing.assert_allclose(spin[:, column], [turn[2, 1], turn[0, 2], turn[1, 0]], atol=1e-5)
+    jaw = model_of(JAW)
+    np.testing.assert_allclose(jaw.spin_jacobian(jaw.middle, "left_pad"), 0.0, atol=1e-15)
+
+
 @pytest.mark.parametrize(
     ("wrong", "right", "problem"),
     [
@@ -101,6 +117,33 @@ def test_a_model_that_drake_would_abort_on_is_an_error(tmp_path):
     )
     with pytest.raises(HandError, match="Drake does not take this hand"):
         load_hand(read_hand(model))
+
+
+@pytest.mark.parametrize("scale", ["a a a", "1 1", "nan 1 1", "0 1 1"])
+def test_a_mesh_scale_that_is_none_is_an_error(tmp_path, scale):
+    model = tmp_path / "scaled.urdf"
+    mesh = f'<collision><geometry><mesh filename="m.stl" scale="{scale}"/></geometry></collision>'
+    model.write_text(f'<robot name="scaled"><link name="a">{mesh}</link></robot>')
+    with pytest.raises(FileFormatError, match=r"scaled\.urdf: mesh 'm\.stl': 'scale' cannot be"):
+        load_hand(read_hand(model))
+
+
+def test_jaws_that_nobody_coupled_are_said_to_move_on_their_own_and_a_hand_file_couples_them(tmp_path):
+    model = tmp_path / "loose.urdf"
+    text = JAW.read_text()
+    model.write_text(text.replace('<mimic joint="left_joint" multiplier="1" offset="0"/>', ""))
+    tips = model_of(JAW).hand.fingertips
+    loose = load_hand(Hand("loose", model, tips))
+    assert len(loose.free) == 2
+    assert any("follows: left_joint" in note for note in loose.notes)
+    coupled = load_hand(Hand("coupled", model, tips, joints={"right_joint": JointRule(follows="left_joint")}))
+    assert len(coupled.free) == 1
+    assert not coupled.notes
+
+
+def test_joints_that_follow_are_not_set():
+    with pytest.raises(HandError, match="'right_joint' follows 'left_joint'"):
+        model_of(JAW).positions({"right_joint": 0.045, "left_joint": 0.03})
 
 
 def test_a_hand_without_joints_is_none(tmp_path):

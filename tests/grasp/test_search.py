@@ -9,15 +9,16 @@ import pytest
 
 import fixture_design as fd
 from fixture_design.contacts import Scale
+from fixture_design.errors import InputError
 from fixture_design.geometry import load_part
-from fixture_design.grasp import Posture, Search, grasp_at
+from fixture_design.grasp import Posture, Search, grasp_at, posed
 from fixture_design.grasp.library import Spots, kabsch
-from fixture_design.grasp.search import grasp
+from fixture_design.grasp.search import check_kinds, grasp
 from fixture_design.grasp.spots import antipodal, closing_sets, opposite, regions_of, spread
 from fixture_design.grasp.touching import touching
 from fixture_design.layout import Answer, Part, Pose
 from fixture_design.verification import check
-from tests.grasp.hands import JAW, SHARED, THREE, model_of, primitive, public_hand
+from tests.grasp.hands import JAW, SHARED, THREE, at, model_of, primitive, public_hand
 
 #: Few tries and grasps: what is found must be right, not plenty.
 QUICK = Search(most=1, tries=40)
@@ -36,8 +37,9 @@ def test_faces_of_a_wedge_see_each_other_within_their_friction_cones_only(tmp_pa
     """Two sides of a wedge of 30 degrees: straight lines from one meet the other 30 degrees off its normal."""
     corners = [[0, 0], [1, 0], [np.cos(np.radians(30)), np.sin(np.radians(30))]]
     import trimesh
+    from shapely import Polygon
 
-    wedge = trimesh.creation.extrude_polygon(__import__("shapely").Polygon(0.06 * np.array(corners)), 0.06)
+    wedge = trimesh.creation.extrude_polygon(Polygon(0.06 * np.array(corners)), 0.06)
     wedge.export(tmp_path / "wedge.obj", digits=16)
     geometry = load_part(Part("wedge", "mesh", tmp_path / "wedge.obj", None, 1.0, Pose.identity(3)))
     points, pairs = opposite(geometry, spread(geometry, 0))
@@ -99,7 +101,7 @@ def _stands(found, part, geometry):
     """What the search says is so: fingertips touch within their gap, nothing is inside, joints are in range."""
     posture = found.posture
     again = touching(posture, part, geometry)
-    assert not again.overlaps
+    assert not again.overlaps, again.overlaps
     assert {e.name for e in again.layout.elements} == {e.name for e in found.layout.elements}
     assert posture.model.within(posture.q[None])[0]
     assert posture.model.collides_with_itself(posture.q) is None
@@ -224,8 +226,42 @@ def test_public_hands_close_on_more(name, shape):
     _stands(result.grasps[0], part, geometry)
 
 
-def test_one_finger_holds_nothing():
+@pytest.mark.parametrize(
+    ("wrong", "problem"),
+    [({"most": 0}, "'most'"), ({"tries": 0}, "'tries'"), ({"seed": -1}, "'seed'"), ({"table": np.nan}, "'table'"),
+     ({"load": np.zeros(3)}, "'load' is no wrench"), ({"load": np.full(6, np.inf)}, "'load' is no wrench")],
+)  # fmt: skip
+def test_searches_that_cannot_be_are_refused(wrong, problem):
+    with pytest.raises(InputError, match=problem):
+        Search(**wrong)
+
+
+def test_names_of_files_are_no_hands_and_no_parts():
+    part, _ = primitive("cube")
+    with pytest.raises(InputError, match="no part"):
+        check_kinds(model_of(JAW), "cube.stl")
+    with pytest.raises(InputError, match="no hand"):
+        check_kinds("jaw.urdf", part)
+
+
+def test_one_fingertip_is_no_proof_that_nothing_holds():
+    """The other pad is a link like any: it would hold against the one that is named."""
     part, geometry = primitive("cube")
-    result = grasp(public_hand("finger_edu"), part, QUICK, geometry)
-    assert result.satisfied is Answer.NO
-    assert "one finger pushes" in (result.reason or "")
+    model = model_of(JAW)
+    result = grasp(replace(model, fingertips=model.fingertips[:1]), part, QUICK, geometry)
+    assert result.satisfied is Answer.UNDECIDED
+    assert "one fingertip" in (result.reason or "")
+    posture = Posture(model, model.positions({"left_joint": 0.03}), at(0, 0, -0.115))
+    one = replace(posture, model=replace(model, fingertips=model.fingertips[:1]))
+    assert posed(one, part, geometry).satisfied is Answer.YES
+
+
+def test_regions_of_grasps_whose_verdicts_are_undecided_are_not_closed(monkeypatch):
+    from fixture_design.grasp import result as results
+
+    monkeypatch.setattr(results.Grasp, "closed", property(lambda found: Answer.UNDECIDED))
+    part, geometry = primitive("cube")
+    result = grasp(model_of(JAW), part, QUICK, geometry)
+    assert result.grasps
+    outcomes = {region.outcome for region in result.regions if region.features == result.grasps[0].features}
+    assert outcomes == {"undecided"}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fixture_design.contacts import Contact
-from fixture_design.grasp import Posture, grasp_at
+from fixture_design.grasp import HandModel, Posture, grasp_at, load_hand, posed
 from fixture_design.grasp.touching import touching
 from fixture_design.io import read_layout, write_layout
 from fixture_design.layout import Answer, Element, Layout, LineTip, PadTip, Part, PointTip, Pose, SoftTip, SphereTip
@@ -72,6 +72,50 @@ def test_a_palm_that_touches_counts():
     found = touching(Posture(model, model.positions({"left_joint": 0.03}), at(0, 0, -0.09)), part, geometry)
     assert {found.links[contact.name] for contact in found.layout.contacts} == {"body"}
     np.testing.assert_allclose([contact.point[2] for contact in found.layout.contacts], -0.03, atol=1e-9)
+
+
+def _second_box(tmp_path):
+    """The gripper with a box on its left pad that is in a part between the jaws."""
+    urdf = tmp_path / "lumpy.urdf"
+    lump = '<collision><origin xyz="0.01 0 0.025"/><geometry><box size="0.02 0.01 0.01"/></geometry></collision>'
+    text = JAW.read_text()
+    link = text.index('<link name="left_pad">') + len('<link name="left_pad">')
+    urdf.write_text(text[:link] + lump + text[link:])
+    return load_hand(replace(model_of(JAW).hand, model=urdf))
+
+
+def test_a_link_whose_tip_touches_may_be_in_the_part_with_the_rest(tmp_path):
+    part, geometry = primitive("cube")
+    model = _second_box(tmp_path)
+    posture = Posture(model, model.positions({"left_joint": 0.03}), BELOW)
+    found = touching(posture, part, geometry)
+    assert {element.name for element in found.layout.elements} == {"left", "right"}
+    assert found.overlaps == {"left_pad": pytest.approx(0.01)}
+    answer = posed(posture, part, geometry)
+    assert answer.satisfied is Answer.NO
+    assert "left_pad is 10 mm inside the part" in (answer.reason or "")
+
+
+def test_a_hand_that_runs_into_itself_is_not_said_to_close(monkeypatch):
+    part, geometry = primitive("cube")
+    model = model_of(JAW)
+    posture = Posture(model, model.positions({"left_joint": 0.03}), BELOW)
+    assert posed(posture, part, geometry).satisfied is Answer.YES
+    monkeypatch.setattr(HandModel, "collides_with_itself", lambda self, q: ("body", "left_pad"))
+    answer = posed(posture, part, geometry)
+    assert answer.satisfied is Answer.UNDECIDED
+    assert "body and left_pad" in (answer.reason or "")
+
+
+def test_hulls_prove_nothing():
+    """A hull is fatter than the link: that it is in the part does not say that the link is."""
+    part, geometry = primitive("cube")
+    model = model_of(JAW)
+    links = {**model.links, "body": replace(model.links["body"], notes=("its convex hull is used",))}
+    posture = Posture(replace(model, links=links), model.positions({"left_joint": 0.03}), at(0, 0, -0.08))
+    answer = posed(posture, part, geometry)
+    assert answer.satisfied is Answer.UNDECIDED
+    assert "body is 10 mm inside" in (answer.reason or "")
 
 
 def test_a_tilted_pad_holds_nothing():
@@ -146,6 +190,6 @@ def test_jaws_hold_a_weight_as_their_drive_and_friction_allow():
     assert found.weakest.force <= 40 + 1e-6
     assert found.held is not None
     assert found.held.torques["left_joint"] == pytest.approx(-20.0)
-    assert sum(found.held.forces.values())[2] == pytest.approx(10.0)
+    assert sum(found.held.forces.values(), np.zeros(3))[2] == pytest.approx(10.0)
     heavy = grasp_at(posture, part, geometry, np.array([0.0, 0, -41, 0, 0, 0]))
     assert heavy.held is None

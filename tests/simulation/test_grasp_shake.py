@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,12 @@ from fixture_design.simulation.grasp_shake import Shake, shaken
 from tests.grasp.hands import JAW, at, model_of, primitive
 
 
-def _grasp():
+def _grasp(friction=0.5, of_tips=None):
+    """A cube between pads with the friction of the hand and of its fingertips."""
     part, geometry = primitive("cube")
     model = model_of(JAW)
+    tips = tuple(replace(tip, friction=of_tips) for tip in model.fingertips)
+    model = replace(model, hand=replace(model.hand, friction=friction), fingertips=tips)
     return grasp_at(Posture(model, model.positions({"left_joint": 0.03}), at(0, 0, -0.115)), part, geometry), geometry
 
 
@@ -22,6 +27,22 @@ def test_a_box_between_pads_stays_under_gravity_from_six_sides():
     assert not isinstance(result, str)
     assert result.holds
     assert result.moved.max() < 1e-3
+
+
+@pytest.mark.parametrize(("friction", "of_tips"), [(0.02, None), (0.5, 0.02)])
+def test_a_box_between_slippery_pads_falls(friction, of_tips):
+    """29.4 N in all and friction 0.02 carry 0.6 N at most: the box weighs 0.98 N."""
+    found, geometry = _grasp(friction, of_tips)
+    result = shaken(found, geometry, Shake(pull=0.3))
+    assert not isinstance(result, str)
+    np.testing.assert_array_equal(result.held, [True, False, False, True, False, False])
+
+
+def test_tips_that_grip_better_than_their_hand_hold():
+    found, geometry = _grasp(0.02, 0.5)
+    result = shaken(found, geometry, Shake(pull=0.2))
+    assert not isinstance(result, str)
+    assert result.holds
 
 
 @pytest.mark.slow
