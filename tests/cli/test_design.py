@@ -262,7 +262,7 @@ def test_ctrl_c_saves_the_best_so_far(command: Command, tmp_path: Path, monkeypa
         if len(told) == 3:  # the first way out was searched
             os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("fixture_design.cli.design._shown", interrupt)
+    monkeypatch.setattr("fixture_design.cli.design.shown", interrupt)
     before = signal.getsignal(signal.SIGINT)
     try:
         ran = command("design", saved(tmp_path, PLANAR.replace("[-1, -1]", "[0, -1]")), "-o", tmp_path / "out.yaml")

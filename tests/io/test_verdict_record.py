@@ -170,7 +170,7 @@ def test_schema_of_verdicts() -> None:
 def test_schema_of_nothing() -> None:
     with pytest.raises(UnknownNameError) as caught:
         json_schema("layuot")
-    kinds = "assembly, classifier, graph, layout, task, verdict"
+    kinds = "assembly, classifier, graph, hand, layout, task, verdict"
     assert str(caught.value) == f"no file kind is called 'layuot'; did you mean 'layout'? there are: {kinds}"
 
 
