@@ -154,8 +154,17 @@ def test_preloads_keep_within_the_limits_and_hold_with_more_clamps_or_not_at_all
     pushes = [element.preload for element in tight.layout.elements if element.role == "clamp"]
     assert max(p for p in pushes if p is not None) <= 200.0
     assert len(pushes) >= 2
-    hopeless = design(plate(limits=Limits(preload=(0.0, 1.0), clamps=2), **keys))  # type: ignore[arg-type]
-    assert hopeless.satisfied is Answer.UNDECIDED  # ways out along which the part slides have no bound that proves a no
+    weak = Limits(preload=(0.0, 1.0), clamps=2)
+    # locators on both sides, between which the part slides out, might hold these loads without any push
+    open_ = design(plate(limits=weak, **keys))  # type: ignore[arg-type]
+    assert open_.satisfied is Answer.UNDECIDED
+    assert open_.layout is None
+    assert "preload" in (open_.reason or "")
+    # whichever way it comes out, a load pulls it there
+    pulls = [(300.0, 0.0), (-300.0, 0.0), (0.0, 300.0), (0.0, -300.0)]
+    every = tuple(load(force, name=f"pull {k}") for k, force in enumerate(pulls))
+    hopeless = design(plate(limits=weak, **{**keys, "loads": every}))  # type: ignore[arg-type]
+    assert hopeless.satisfied is Answer.NO
     assert hopeless.layout is None
     assert "preload" in (hopeless.reason or "")
 
