@@ -11,7 +11,7 @@ polar cone. Every question (does it locate, does it come out, does it hold) is a
 
 The folders state the theory, and each imports only from those to its right::
 
-    cli > batch > viewing > io > simulation > design | recognition > assembly > verification
+    cli > batch > viewing > io > simulation > grasp > design | recognition > assembly > verification
         > geometry | analysis > layout > contacts > cones > arrays | errors | tolerances
 
 * `cones`: the polyhedral convex cone, its two forms, and the operations of sections 2.4, 2.5 and 2.8. `cones.kernel`
@@ -59,9 +59,9 @@ normal: d = [n; x X n], admissible motions have d . dq <= 0, and the contact pus
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+from fixture_design.packages import loaded_later
 from fixture_design.version import VERSION as __version__
 
 if TYPE_CHECKING:
@@ -165,11 +165,7 @@ __all__ = [
     "write_layout",
 ]
 
-
-def __getattr__(name: str) -> object:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+__getattr__ = loaded_later(__name__, _HOME)
 
 
 def __dir__() -> list[str]:

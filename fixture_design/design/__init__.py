@@ -1,14 +1,12 @@
 """Design: elements added, moved and removed until the conditions hold, and the proof that fewer do not."""
 
-import sys
-from types import ModuleType
-
 from fixture_design.design.design import design
 from fixture_design.design.repair import repair
 from fixture_design.design.result import Bound, ChangeBound, DesignResult
 from fixture_design.design.steps import Step
 from fixture_design.design.task import CandidateRules, Grid, Limits, Objective, PinRules, Task
 from fixture_design.design.ways import Progress, Ways
+from fixture_design.packages import called_as
 
 __all__ = [
     "Bound",
@@ -27,11 +25,5 @@ __all__ = [
     "repair",
 ]
 
-
-class _Callable(ModuleType):
-    """`fixture_design.design` is this package once anything has imported it; `fd.design(task)` works all the same."""
-
-    __call__ = staticmethod(design)
-
-
-sys.modules[__name__].__class__ = _Callable
+# as `fd.design` it is this package once anything has imported it
+called_as(__name__, design)

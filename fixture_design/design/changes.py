@@ -21,11 +21,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Rows, Vector
-from fixture_design.cones.kernel import tucker_partition
 from fixture_design.design.candidates import flat, stops
 from fixture_design.design.closing import balanced_circuit
 from fixture_design.design.hitting import free_motion, strongest
 from fixture_design.design.problem import Problem
+from fixture_design.design.removing import balance_of
 from fixture_design.tolerances import DEFAULT
 
 #: Cuts after which the search says what it knows so far.
@@ -216,15 +216,12 @@ def _bound_both_ways(problem: Problem, options: Options, chosen: Mask) -> tuple[
     some = np.flatnonzero(chosen & options.locator)
     if not problem.opens or not len(some):
         return None
-    rows = flat(problem.candidates.rows, options.candidates[some])
-    owner = np.repeat(some, problem.each)[rows.any(axis=1)]
-    rows = np.ascontiguousarray(rows[rows.any(axis=1)])
-    balanced = tucker_partition(rows, DEFAULT.tie).balanced
+    rows, owner, balanced = balance_of(problem.candidates.rows, options.candidates[some])
     if not balanced.any():
         return None
     circuit = balanced_circuit(rows, np.ones(len(rows)), balanced)
     found = balanced if circuit is None else circuit
-    return tuple(int(option) for option in np.unique(owner[found]))
+    return tuple(int(option) for option in np.unique(some[owner[found]]))
 
 
 def _missing(problem: Problem, options: Options, chosen: Mask) -> Iterator[Mask]:

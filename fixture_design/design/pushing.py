@@ -102,8 +102,7 @@ class Program:
             clamps: all that are no locators; those that do not push (`Duties.pushes`) react.
         """
         pushing = self.duties.pushes[clamps]
-        reacting = np.concatenate([locators, clamps[~pushing]]).astype(np.int64)
-        system = self._system(reacting, clamps[pushing], len(locators))
+        system, reacting = self._system(locators, clamps)
         found = priced = system.least(system.preloads, 0.0)
         left = 0.0
         if found.x is None:
@@ -126,14 +125,19 @@ class Program:
 
     def total(self, locators: Indices, clamps: Indices) -> float:
         """The total of `least` alone, which is inf at once where there is no balance."""
-        pushing = self.duties.pushes[clamps]
-        reacting = np.concatenate([locators, clamps[~pushing]]).astype(np.int64)
-        system = self._system(reacting, clamps[pushing], len(locators))
+        system, _ = self._system(locators, clamps)
         found = system.least(system.preloads, 0.0)
         return np.inf if found.x is None else float(found.x[system.preloads].sum()) * self._unit()
 
-    def _system(self, reacting: Indices, clamps: Indices, locators: int) -> _System:
-        """The equations of all wrenches, one under the other, and the columns of each beside those of the next."""
+    def _system(self, locators: Indices, others: Indices) -> tuple[_System, Indices]:
+        """The equations of all wrenches, one under the other, and the columns of each beside those of the next; and
+        what reacts, the locators first.
+
+        Args:
+            others: clamps that push, and what only reacts.
+        """
+        pushing = self.duties.pushes[others]
+        reacting, clamps = np.concatenate([locators, others[~pushing]]).astype(np.int64), others[pushing]
         duties, count, unit = self.duties, len(clamps), self._unit()
         dimension = self.rough.shape[2]
         blocks = [self._block(number, reacting, clamps) for number in range(len(duties.wrenches))]
@@ -148,8 +152,8 @@ class Program:
         right = np.hstack([duties.wrenches / unit, np.zeros((len(blocks), count))]).ravel()
         low = np.concatenate([np.zeros(width), duties.low[clamps] / unit])
         high = np.concatenate([np.full(width, np.inf), duties.high[clamps] / unit])
-        upper = self._pressing(locators, at, width, count)
-        return _System(matrix, right, upper, low, high, slacks, np.arange(width + count) >= width)
+        upper = self._pressing(len(locators), at, width, count)
+        return _System(matrix, right, upper, low, high, slacks, np.arange(width + count) >= width), reacting
 
     def _reactions(self, x: Weights, reacting: Indices, system: _System) -> Weights:
         """The largest force of everything that reacts, in any of the balances [N]."""

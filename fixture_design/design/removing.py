@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point, Rows
+from fixture_design.arrays import Indices, Mask, Point, Rows
 from fixture_design.cones.kernel import tucker_partition
-from fixture_design.design.candidates import Candidates, flat
+from fixture_design.design.candidates import Candidates, Several, flat
 from fixture_design.design.steps import Step
 from fixture_design.tolerances import COPLANAR_ANGLE, DEFAULT
 
@@ -83,20 +83,22 @@ def _said(rows: Rows, each: int) -> tuple[Rows, np.ndarray]:
     return np.ascontiguousarray(rows[kept]), (np.arange(len(rows)) // each)[kept]
 
 
+def balance_of(source: Several, chosen: Sequence[int] | Indices) -> tuple[Rows, Indices, Mask]:
+    """Rows of the chosen candidates that say something, which of the chosen each is of, and which balance."""
+    rows, owner = _said(flat(source, chosen), source.shape[1])
+    return rows, owner, tucker_partition(rows, DEFAULT.tie).balanced if len(rows) else np.zeros(0, dtype=bool)
+
+
 def bound_both_ways(candidates: Candidates, chosen: Indices) -> bool:
     """Whether there is a balance among locators, so that no motion leaves all of them."""
-    return bool(_bound(candidates, chosen.tolist(), leaves=False))
+    return bool(balance_of(candidates.rows, chosen)[2].any())
 
 
 def _bound(candidates: Candidates, chosen: Sequence[int], leaves: bool) -> list[int]:
     """The candidates that take part in a balance."""
     if not chosen:
         return []
-    source = candidates.normals if leaves else candidates.rows
-    rows, owner = _said(flat(source, chosen), source.shape[1])
-    if not len(rows):
-        return []
-    balanced = tucker_partition(rows, DEFAULT.tie).balanced
+    _, owner, balanced = balance_of(candidates.normals if leaves else candidates.rows, chosen)
     return [chosen[index] for index in np.unique(owner[balanced]).tolist()]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -141,20 +142,22 @@ def _first_that_holds(asked: Layout, ways: Ways, problem: Problem, fewest: Fewes
     first = _drawn_up(asked, ways, problem, (locators, clamps), fewest)
     if first.satisfied is Answer.YES:
         return first
-    as_found = _drawn_up(asked, ways, problem, (fewest.locators, fewest.clamps), fewest)
-    if as_found.satisfied is Answer.YES or first.verdict is None or not _inexact(first.verdict):
-        return as_found if as_found.satisfied is Answer.YES else first
-    for exact in more_exact(problem, locators, clamps, fewest.pool):
+    others = [(fewest.locators, fewest.clamps)]
+    others = [one for one in others if not all(map(np.array_equal, one, (locators, clamps)))]
+    exacter = more_exact(problem, locators, clamps, fewest.pool) if _inexact(first.verdict) else ()
+    for one in chain(others, ((exact, clamps) for exact in exacter)):
         if problem.cancelled():
             break
-        result = _drawn_up(asked, ways, problem, (exact, clamps), fewest)
+        result = _drawn_up(asked, ways, problem, one, fewest)
         if result.satisfied is Answer.YES:
             return result
     return first
 
 
-def _inexact(verdict: Verdict) -> bool:
-    return any(r.require == "accurate" and r.answer is not Answer.YES for r in verdict.requirements)
+def _inexact(verdict: Verdict | None) -> bool:
+    return verdict is not None and any(
+        r.require == "accurate" and r.answer is not Answer.YES for r in verdict.requirements
+    )
 
 
 def _drawn_up(

@@ -229,10 +229,9 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
         clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
     preload, holds = 0.0, True
     if problem.pushing is not None:
-        first = best is not None and best.holds and problem.objective[:1] == ("fewest",)
-        most = len(best.clamps) if best is not None and first else None
+        most = len(best.clamps) if best and best.holds and problem.objective[:1] == ("fewest",) else None
         pressed = pressed_clamps(problem, problem.pushing, locators, clamps, most)
-        if _preload_before_accuracy(problem) and (pressed.holds or not first):
+        if _preload_before_accuracy(problem) and (pressed.holds or most is None):
             locators, pressed = pressed_together(
                 problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
             )

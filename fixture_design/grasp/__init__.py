@@ -4,10 +4,10 @@
 and `torques` say how good that is; `search` finds grasps. All of it is loaded when it is first asked for.
 """
 
-import sys
 from importlib import import_module
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from fixture_design.packages import called_as, loaded_later
 
 if TYPE_CHECKING:
     from fixture_design.grasp.hand import Fingertip, Hand, HandError, JointRule
@@ -62,18 +62,7 @@ __all__ = [
     "posed",
 ]
 
+__getattr__ = loaded_later(__name__, _HOME)
 
-def __getattr__(name: str) -> object:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-
-
-class _Callable(ModuleType):
-    """The package, which `fd.grasp` is once anything has imported it, can be called like the function."""
-
-    def __call__(self, *given: Any, **named: Any) -> Any:
-        return import_module(f"{__name__}.search").grasp(*given, **named)
-
-
-sys.modules[__name__].__class__ = _Callable
+# as `fd.grasp` it is this package once anything has imported it
+called_as(__name__, lambda *given, **named: import_module(f"{__name__}.search").grasp(*given, **named))

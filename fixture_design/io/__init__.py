@@ -1,6 +1,5 @@
 """Our files: strict readers that say what is wrong and where, writers that lose nothing, JSON Schemas."""
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 from fixture_design.io.assembly_file import assembly_from_data, read_assembly
@@ -16,6 +15,7 @@ from fixture_design.io.schemas import json_schema, schema_names
 from fixture_design.io.task_file import TASK_ENDINGS, read_task, read_task_or_layout, task_of_part
 from fixture_design.io.urdf_export import write_urdf
 from fixture_design.io.verdict_record import error_record, verdict_to_dict
+from fixture_design.packages import loaded_later
 
 if TYPE_CHECKING:
     from fixture_design.io.classifier_file import classifier_to_dict, read_classifier, write_classifier
@@ -73,8 +73,4 @@ __all__ = [
     "write_urdf",
 ]
 
-
-def __getattr__(name: str) -> object:
-    if name not in _LATER:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_LATER[name]}"), name)
+__getattr__ = loaded_later(__name__, _LATER)

@@ -9,8 +9,6 @@ from pydantic import Field
 from fixture_design.grasp.hand import USUAL_GRIP, USUAL_SPREAD
 from fixture_design.io.record_types import Friction, Name, Number, Positive, Record, Size, Text, Triple
 
-HAND_SCHEMA = "fixture_design/hand/1"
-
 
 class FingertipRecord(Record):
     """Where a finger touches, in the frame of its link: a point, or a ball, or a pad."""

@@ -20,8 +20,6 @@ from fixture_design.io.record_types import (
 from fixture_design.io.records import KeyFeatureRecord, LoadRecord, PartRecord, RequireRecord, TipField, or_point
 from fixture_design.layout import Space
 
-TASK_SCHEMA = "fixture_design/task/1"
-
 _Corners = Annotated[tuple[Coordinates, ...], Field(strict=False, min_length=2, max_length=2)]
 _Count = Annotated[int, Field(ge=0)]
 

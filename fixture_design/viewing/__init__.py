@@ -7,9 +7,9 @@ description; `preview_page` is an HTML file of it, `picture` a PNG (`urdf/bracke
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+from fixture_design.packages import loaded_later
 from fixture_design.viewing.graph_picture import graph_picture, write_graph_picture
 from fixture_design.viewing.words import evidence_in_words
 
@@ -48,8 +48,4 @@ __all__ = [
     "write_report",
 ]
 
-
-def __getattr__(name: str) -> object:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+__getattr__ = loaded_later(__name__, _HOME)
