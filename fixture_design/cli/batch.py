@@ -31,7 +31,7 @@ _CODES = {
 def batch(
     paths: Annotated[
         list[Path],
-        typer.Argument(help="Layout files, .jsonl of layouts, folders, globs.", metavar="PATH...", readable=False),
+        typer.Argument(help="Layout files, .jsonl of layouts, folders, globs.", metavar="PATH", readable=False),
     ],
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Records, one a line; gone on with if there.", metavar="OUT.jsonl")

@@ -10,18 +10,9 @@ from typing import Annotated
 import typer
 from typer.exceptions import TyperException
 
-from fixture_design.cli.batch import batch
-from fixture_design.cli.classifier import classifier
-from fixture_design.cli.design import design
+from fixture_design.cli.commands import CommandGroup
 from fixture_design.cli.exit_codes import ExitCode
-from fixture_design.cli.grasp import grasp
-from fixture_design.cli.interactive import interactive
 from fixture_design.cli.messages import say, say_internal_error
-from fixture_design.cli.preview import preview
-from fixture_design.cli.recognize import recognize
-from fixture_design.cli.schema import schema
-from fixture_design.cli.states import states
-from fixture_design.cli.verify import verify
 from fixture_design.cones.kernel import NAME as KERNEL
 from fixture_design.errors import InputError
 from fixture_design.version import VERSION
@@ -32,19 +23,8 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    cls=CommandGroup,
 )
-app.command()(verify)
-app.command()(design)
-
-app.command()(batch)
-
-app.command()(preview)
-app.command()(interactive)
-app.command()(grasp)
-app.command()(states)
-app.command()(classifier)
-app.command()(recognize)
-app.command()(schema)
 
 
 def _show_version(wanted: bool) -> bool:

@@ -10,26 +10,29 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fixture_design.packages import loaded_later
-from fixture_design.viewing.graph_picture import graph_picture, write_graph_picture
-from fixture_design.viewing.words import evidence_in_words
 
 if TYPE_CHECKING:
+    from fixture_design.viewing.graph_picture import graph_picture, write_graph_picture
     from fixture_design.viewing.previews import Preview, preview
     from fixture_design.viewing.report import refuse_inputs, write_report
     from fixture_design.viewing.scene import Scene, scene_of
     from fixture_design.viewing.scene_page import preview_page
     from fixture_design.viewing.scene_picture import picture
     from fixture_design.viewing.session import interactive
+    from fixture_design.viewing.words import evidence_in_words
 
 _HOME = {
     "Preview": "previews",
     "Scene": "scene",
+    "evidence_in_words": "words",
+    "graph_picture": "graph_picture",
     "interactive": "session",
     "picture": "scene_picture",
     "preview": "previews",
     "preview_page": "scene_page",
     "refuse_inputs": "report",
     "scene_of": "scene",
+    "write_graph_picture": "graph_picture",
     "write_report": "report",
 }
 

@@ -7,7 +7,8 @@ import pytest
 from fixture_design.cones import kernel
 
 
-@pytest.fixture(params=kernel.available(), autouse=True, scope="session")
+# Ends with its module: tests elsewhere run on the kernel that was chosen at the start.
+@pytest.fixture(params=kernel.available(), autouse=True, scope="module")
 def implementation(request: pytest.FixtureRequest) -> Iterator[str]:
     with kernel.using(request.param):
         yield request.param
