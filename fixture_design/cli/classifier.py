@@ -27,16 +27,16 @@ def classifier(
         Literal["fixed", "part"], typer.Option("--axes", help="Axes of what is measured: the world's, or the part's.")
     ] = "fixed",
     friction: Annotated[float, typer.Option("--friction", help="Coefficient of every contact.")] = 0.0,
-    mass: Annotated[float, typer.Option("--mass", help="Of the moving part, if its weight is not tared [kg].")] = 0.0,
+    mass: Annotated[float, typer.Option("--mass", help="Of the moving part, if its weight is not tared (kg).")] = 0.0,
     center: Annotated[
-        str | None, typer.Option("--center", help="Its centre of mass, in its own frame [m].", metavar="X,Y[,Z]")
+        str | None, typer.Option("--center", help="Its centre of mass, in its own frame (m).", metavar="X,Y[,Z]")
     ] = None,
     gravity: Annotated[
         str | None, typer.Option("--gravity", help="Default: 9.81 along -y, in space -z.", metavar="X,Y[,Z]")
     ] = None,
     noise: Annotated[float, typer.Option("--noise", help="Bound of the error of forces, relative to them.")] = 0.0,
     twist_noise: Annotated[float, typer.Option("--twist-noise", help="Likewise of displacements.")] = 0.0,
-    floor: Annotated[float, typer.Option("--floor", help="Forces up to this tell nothing [N].")] = 0.0,
+    floor: Annotated[float, typer.Option("--floor", help="Forces up to this tell nothing (N).")] = 0.0,
     interpolation: Annotated[
         Literal["neighbours", "none", "hull"], typer.Option("--interpolation", help="What is between samples.")
     ] = "neighbours",

@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 _HAND = "Hand file, or a URDF or SDF file (with NAME.hand.yaml beside it, or its fingertips are guessed)."
 _PART = "Part (STL, OBJ, ..., URDF), or a layout whose part it is, where it stands."
-_LOAD = "Force [N], and moment about the centre of mass [N m], on the part: fx,fy,fz or fx,fy,fz,mx,my,mz."
+_LOAD = "Force (N), and moment about the centre of mass (N m), on the part: fx,fy,fz or fx,fy,fz,mx,my,mz."
 
 
 def grasp(
-    hand: Annotated[Path, typer.Argument(help=_HAND, readable=False)],
-    part: Annotated[Path, typer.Argument(help=_PART, readable=False)],
+    hand: Annotated[Path, typer.Argument(help=_HAND, metavar="HAND", readable=False)],
+    part: Annotated[Path, typer.Argument(help=_PART, metavar="PART", readable=False)],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Layout file of the best grasp to write.")] = None,
     scale: Annotated[float, typer.Option(help="Factor that makes a part file's vertices metres.")] = 1.0,
     most: Annotated[int, typer.Option(help="Grasps wanted, on different features.", min=1)] = 5,
     tries: Annotated[int, typer.Option(help="Places looked at at most.", min=1)] = 160,
     seed: Annotated[int, typer.Option(help="Of the random numbers.", min=0)] = 0,
-    table: Annotated[float | None, typer.Option(help="Height z of a table that the hand stays above [m].")] = None,
+    table: Annotated[float | None, typer.Option(help="Height z of a table that the hand stays above (m).")] = None,
     load: Annotated[str | None, typer.Option(help=_LOAD, metavar="NUMBERS")] = None,
     joint: Annotated[
         list[str] | None,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def recognize(
     classifier: Annotated[Path, typer.Argument(help="Classifier file.", metavar="CLASSIFIER", readable=False)],
-    log: Annotated[Path, typer.Argument(help="Columns t, fx, ..., mz [s, N, N m].", metavar="LOG.csv", readable=False)],
+    log: Annotated[Path, typer.Argument(help="Columns t, fx, ..., mz (s, N, N m).", metavar="LOG.csv", readable=False)],
     start: Annotated[
         str | None, typer.Option("--start", help="The state before the first row, or several.", metavar="N1,N2")
     ] = None,

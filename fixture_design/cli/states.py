@@ -39,7 +39,7 @@ def states(
         str | None, typer.Option("--at", help="The state of one configuration: x,y,theta.", metavar="CONFIG")
     ] = None,
     within: Annotated[
-        float | None, typer.Option("--within", help="With --at: touching up to this distance [m].")
+        float | None, typer.Option("--within", help="With --at: touching up to this distance (m).")
     ] = None,
     path: Annotated[
         tuple[str, str] | None,

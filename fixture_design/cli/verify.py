@@ -16,7 +16,7 @@ from fixture_design.layout import Layout, Verdict, named_files
 
 def verify(
     layouts: Annotated[  # `readable`: whether one can be read is not Typer's to say, which would leave out the others
-        list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT...", readable=False)
+        list[Path], typer.Argument(help="Layout files (YAML or JSON).", metavar="LAYOUT", readable=False)
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout (several: an array).")] = False,
     report: Annotated[
