@@ -1,14 +1,21 @@
-"""Locators moved to where they are more exact, without opening what the clamps close."""
+"""Locators moved: to where they are more exact without opening what the clamps close, or to where all hold best."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Indices, Mask
+from fixture_design.design.candidates import flat
 from fixture_design.design.clamping import margins
 from fixture_design.design.locating import MOST_EXCHANGES, exchanged
+from fixture_design.design.locating_several import inexactness_of
 from fixture_design.design.problem import Problem
 from fixture_design.tolerances import GOOD_MARGIN
+
+#: Turns of moving all elements, at most, and candidates whose margin is looked at in each; a margin counts as larger
+#: by this part of it [-].
+_MOST_TURNS, _LOOKED_AT, _BETTER = 20, 16, 1e-6
 
 
 def moved_while_closed(
@@ -35,6 +42,54 @@ def moved_while_closed(
                          for place in range(len(chosen))])  # fmt: skip
 
     return exchanged(problem.rows, pool, locators, fixed, problem.features, allowed, most)
+
+
+def held_together(
+    problem: Problem, pool: Indices, locators: Indices, clamps: Indices, staying: Indices
+) -> tuple[Indices, Indices, float]:
+    """Locators and clamps of a closed set, moved one after the other to where the margin of closure is largest.
+
+    Args:
+        pool: where locators may be: they still determine the part.  staying: elements that do not move.
+
+    Returns:
+        locators, clamps, and the margin itself, no bound.
+    """
+    chosen, best = np.concatenate([locators, clamps]), 0.0
+    for _ in range(_MOST_TURNS):
+        before = best
+        for place in np.flatnonzero(~np.isin(chosen, staying)).tolist():
+            locating = place < len(locators)
+            rest = np.delete(chosen, place)
+            free = np.setdiff1d(pool if locating else problem.new, rest)
+            free = np.append(free[problem.joins(free, rest)], chosen[place])
+            for margin, candidate in _holding_best(problem, rest, free):
+                moved = chosen.copy()
+                moved[place] = candidate
+                if margin > best * (1 + _BETTER) and not (locating and _loose(problem, moved[: len(locators)])):
+                    chosen, best = moved, margin
+                    break
+        if best <= before * (1 + _BETTER):
+            break
+    return chosen[: len(locators)], chosen[len(locators) :], best
+
+
+def _holding_best(problem: Problem, rest: Indices, free: Indices) -> list[tuple[float, int]]:
+    """Margins with one more element, largest first, of those candidates whose bounds say most; ``free`` ends with the
+    one that is there.
+    """
+    rows = problem.closing_rows
+    bounds = margins(rows, np.column_stack([np.broadcast_to(rest, (len(free), len(rest))), free]))
+    looked_at = np.union1d(np.argsort(-bounds, kind="stable")[:_LOOKED_AT], [len(free) - 1])
+    found = []
+    for choice in looked_at[bounds[looked_at] > 0]:
+        facet = nearest_facet(flat(rows, np.append(rest, free[choice])))
+        found.append((float(bounds[choice]) if facet is None else facet.distance, int(free[choice])))
+    return sorted(found, reverse=True)
+
+
+def _loose(problem: Problem, locators: Indices) -> bool:
+    return problem.locates and not np.isfinite(inexactness_of(problem, locators))
 
 
 def _fits(problem: Problem, pool: Indices, rest: Indices, least: float) -> Mask:

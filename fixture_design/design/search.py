@@ -20,17 +20,18 @@ from fixture_design.design.found import Found, Outcome
 from fixture_design.design.hitting import fewest_stopping
 from fixture_design.design.locating import exchanged, independent
 from fixture_design.design.locating_several import inexactness_of, located_elements, redundancy
-from fixture_design.design.moving import moved_while_closed
+from fixture_design.design.moving import held_together, moved_while_closed
 from fixture_design.design.pressing import least_bound, least_here, pressed_clamps, pressed_together
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
 from fixture_design.design.removing import bound_both_ways
+from fixture_design.design.task import Objective
 from fixture_design.design.ways import Progress
 
 #: Restarts in one region, and regions that are searched for better layouts of the same size.
 RESTARTS, MOST_REGIONS = 24, 8
-#: Restarts without anything better, after which a region is left where clamps push: each one places them anew, by
-#: hundreds of linear programs. In a region that has not given anything better yet, fewer.
+#: Restarts without anything better, after which a region is left where clamps push, or all move for the margin: each
+#: one takes hundreds of linear programs, or of hulls. In a region that has not given anything better yet, fewer.
 _PATIENCE, _FIRST_PATIENCE = 4, 2
 #: What an element of the start costs next to a new one [-]: it is kept where that makes no difference to the number.
 _KEPT_COST = 0.99
@@ -93,7 +94,8 @@ def _better_within(
     problem: Problem, region: Region, rng: np.random.Generator, best: Found | None, restarts: int = RESTARTS
 ) -> Found | None:
     """The best of one region, or ``best`` if that is better."""
-    in_vain, patience = 0, restarts if problem.pushing is None else _FIRST_PATIENCE if best else _PATIENCE
+    slow = problem.pushing is not None or _before_accuracy(problem, "margin")
+    in_vain, patience = 0, restarts if not slow else _FIRST_PATIENCE if best else _PATIENCE
     for restart in range(restarts):
         if problem.cancelled() or in_vain >= patience:
             break
@@ -131,7 +133,7 @@ def _sets(
 
 def _reacting(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
     """Locators that the least preloads would press, where preloads count before accuracy; else None."""
-    if problem.pushing is None or not _preload_before_accuracy(problem):
+    if problem.pushing is None or not _before_accuracy(problem, "preload"):
         return None
     _, reacting = least_bound(problem, problem.pushing, region.pool)
     kept = problem.rows_of(problem.locators)
@@ -144,9 +146,9 @@ def _reacting(problem: Problem, region: Region, rng: np.random.Generator) -> Ind
     return np.union1d(problem.owners(rows), np.array(problem.locators, dtype=np.int64))
 
 
-def _preload_before_accuracy(problem: Problem) -> bool:
+def _before_accuracy(problem: Problem, what: Objective) -> bool:
     order = problem.objective
-    return "preload" in order and ("accuracy" not in order or order.index("preload") < order.index("accuracy"))
+    return what in order and ("accuracy" not in order or order.index(what) < order.index("accuracy"))
 
 
 def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indices | None:
@@ -169,7 +171,8 @@ def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indi
     rows = independent(problem.rows, pool, kept, rng, problem.candidates.freedoms, joins if spaced else None)
     if len(rows) < problem.candidates.freedoms:
         return None
-    rows = exchanged(problem.rows, pool, rows, kept, problem.features, allowed if spaced else None)
+    if not _before_accuracy(problem, "margin"):  # else they are moved with the clamps, to where all hold best
+        rows = exchanged(problem.rows, pool, rows, kept, problem.features, allowed if spaced else None)
     return np.union1d(problem.owners(rows), np.array(problem.locators, dtype=np.int64))
 
 
@@ -221,22 +224,31 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
     Args:
         best: what there is already: where the fewest elements come first, no clamps are added beyond its number.
     """
-    margin, spacing, places = 0.0, problem.limits.spacing, problem.candidates.places
-    new = clamps[~np.isin(clamps, [*problem.clamps, *problem.spare])]
+    margin = 0.0
     if problem.closes is not None and closes(problem.closing_rows, np.concatenate([locators, clamps])):
-        staying = np.concatenate([locators, clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]])
-        moved, margin = held_best(problem.closing_rows, staying, new, problem.new, places, spacing, problem.standing)
-        clamps = np.concatenate([clamps[~np.isin(clamps, new)], moved])
+        locators, clamps, margin = _held(problem, region, locators, clamps)
     preload, holds = 0.0, True
     if problem.pushing is not None:
         most = len(best.clamps) if best and best.holds and problem.objective[:1] == ("fewest",) else None
         pressed = pressed_clamps(problem, problem.pushing, locators, clamps, most)
-        if _preload_before_accuracy(problem) and (pressed.holds or most is None):
+        if _before_accuracy(problem, "preload") and (pressed.holds or most is None):
             locators, pressed = pressed_together(
                 problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
             )
         clamps, margin, preload, holds = pressed.clamps, pressed.margin, pressed.total, pressed.holds
     return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin, preload, holds)
+
+
+def _held(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> tuple[Indices, Indices, float]:
+    """New clamps where they hold best, and locators too where that counts before accuracy; and the margin."""
+    staying = np.array([*problem.kept, *problem.spare], dtype=np.int64)
+    if _before_accuracy(problem, "margin") and not problem.slides:
+        return held_together(problem, problem.passing(region.pool, region.out), locators, clamps, staying)
+    new = clamps[~np.isin(clamps, staying)]
+    others = np.concatenate([locators, clamps[np.isin(clamps, staying)]])
+    places, spacing = problem.candidates.places, problem.limits.spacing
+    moved, margin = held_best(problem.closing_rows, others, new, problem.new, places, spacing, problem.standing)
+    return locators, np.concatenate([clamps[~np.isin(clamps, new)], moved]), margin
 
 
 def _by_face(problem: Problem, locators: Indices) -> Indices:

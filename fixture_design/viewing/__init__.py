@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from fixture_design.packages import loaded_later
 
 if TYPE_CHECKING:
-    from fixture_design.viewing.graph_picture import graph_picture, write_graph_picture
+    from fixture_design.viewing.graph_drawing import graph_picture, write_graph_picture
     from fixture_design.viewing.previews import Preview, preview
     from fixture_design.viewing.report import refuse_inputs, write_report
     from fixture_design.viewing.scene import Scene, scene_of
@@ -25,14 +25,14 @@ _HOME = {
     "Preview": "previews",
     "Scene": "scene",
     "evidence_in_words": "words",
-    "graph_picture": "graph_picture",
+    "graph_picture": "graph_drawing",
     "interactive": "session",
     "picture": "scene_picture",
     "preview": "previews",
     "preview_page": "scene_page",
     "refuse_inputs": "report",
     "scene_of": "scene",
-    "write_graph_picture": "graph_picture",
+    "write_graph_picture": "graph_drawing",
     "write_report": "report",
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fixture_design.assembly import ContactStateGraph
-from fixture_design.viewing.graph_picture import COINCIDENT, MARKED, graph_picture
+from fixture_design.viewing.graph_drawing import COINCIDENT, MARKED, graph_picture
 from fixture_design.viewing.markup import Markup, table, tag
 
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"

@@ -20,8 +20,8 @@ from fixture_design.io import read_graph, read_layout
 from fixture_design.io.graph_file import is_graph
 from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Layout, Verdict
+from fixture_design.viewing.graph_drawing import graph_png
 from fixture_design.viewing.graph_page import graph_page
-from fixture_design.viewing.graph_picture import graph_png
 from fixture_design.viewing.graph_scene import graph_scene
 from fixture_design.viewing.report import refuse_inputs
 from fixture_design.viewing.scene import Scene, scene_of

@@ -15,9 +15,9 @@ from fixture_design.contacts import face_vectors
 from fixture_design.errors import AssemblyError, FileFormatError, InputError, UnknownNameError, UnsupportedError
 from fixture_design.io import json_schema, read_assembly, read_graph, write_graph, write_graphml
 from fixture_design.viewing import graph_picture, preview, write_graph_picture
+from fixture_design.viewing.graph_drawing import _HEIGHT, _WIDTH
 from fixture_design.viewing.graph_outlines import outlines_of
 from fixture_design.viewing.graph_page import graph_page
-from fixture_design.viewing.graph_picture import _HEIGHT, _WIDTH
 from tests.assembly.parts import FIGURE_14, box, planar
 from tests.cli.conftest import command  # noqa: F401 - a fixture
 from tests.problems import FIGURE_14_TABLE_5
