@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from fixture_design.arrays import Rows
 from fixture_design.cones.kernel import closure_tests
 from fixture_design.design import design
 from fixture_design.layout import Answer
@@ -16,12 +17,7 @@ from tests.design.fakes import Fake, Spots, box, candidates, chamfered, polygon,
 def fewest_clamps(spots: Spots) -> int | None:
     """The least number of clamps against as many locators as freedoms that are independent and left at once."""
     rows = candidates(spots).rows[:, 0]
-    dimension = rows.shape[1]
-    every = np.array(list(combinations(range(len(rows)), dimension)))
-    ranks = np.abs(np.linalg.det(rows[every])) > 1e-7
-    pads = np.pad(spots.normals, ((0, 0), (0, 0)))
-    tests = closure_tests(pads, np.arange(len(every) + 1) * dimension, every.ravel())
-    every = every[ranks & (tests.leaves == 1)]
+    every, dimension = let_go(spots, rows), rows.shape[1]
     for size in range(dimension + 1):
         sets = [[*some, *more] for some in every.tolist() for more in combinations(range(len(rows)), size)]
         sets = [s for s in sets if len(set(s)) == len(s)]
@@ -32,6 +28,15 @@ def fewest_clamps(spots: Spots) -> int | None:
         if (tests.closes == 1).any():
             return size
     return None
+
+
+def let_go(spots: Spots, rows: Rows) -> np.ndarray:
+    """Sets of as many locators as freedoms that are independent and left at once, shape (n, d)."""
+    dimension = rows.shape[1]
+    every = np.array(list(combinations(range(len(rows)), dimension)))
+    ranks = np.abs(np.linalg.det(rows[every])) > 1e-7
+    tests = closure_tests(spots.normals, np.arange(len(every) + 1) * dimension, every.ravel())
+    return every[ranks & (tests.leaves == 1)]
 
 
 def drawn(seed: int) -> Spots:
