@@ -77,6 +77,10 @@ class KernelError(FixtureDesignError):
     """The compiled kernel failed where it should not have, or was asked for where it is not: a fault of ours."""
 
 
+class SolverError(FixtureDesignError):
+    """A solver ended without an answer: neither an optimum nor a proof that there is none."""
+
+
 class FileFormatError(InputError):
     """A file cannot be read, does not parse, or does not follow its schema."""
 

@@ -14,7 +14,7 @@ from fixture_design.viewing.motion_words import motion_in_words
 
 _OUTCOME = {
     Answer.YES: "the requirements hold",
-    Answer.NO: "there is no layout that does what is asked",
+    Answer.NO: "no layout of these candidates does what is asked",
     Answer.UNDECIDED: "undecided",
 }
 
@@ -112,10 +112,11 @@ def _preload_in_words(result: DesignResult) -> str:
 def _accuracy_in_words(result: DesignResult, accuracy: float, best: float) -> str:
     """How exact the locators are, and how far that may be from the best ones."""
     ratio = max(accuracy / best, 1.0)
+    where = "" if result.bound is None or result.bound.complete else " in the directions that were tried"
     gap = f"({ratio - 1:.1%})" if ratio < 2 else f"({ratio:.3g} times)"
     if result.layout is not None and result.layout.key_features:
         taken, least = accuracy * _OFF, best * _OFF
         words = f"accuracy: with locators {_OFF * 1e3:g} mm off, a key feature is off by {taken:.3g} of its tolerance"
-        return f"{words} at most, and with none of these candidates by less than {least:.3g} {gap}"
+        return f"{words} at most, and with none of these candidates{where} by less than {least:.3g} {gap}"
     words = f"accuracy: 1 / volume of the locators' rows is {accuracy:.4g}"
-    return f"{words}, and with none of these candidates below {best:.4g} {gap}"
+    return f"{words}, and with none of these candidates{where} below {best:.4g} {gap}"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fixture_design.arrays import Mask
-from fixture_design.design.candidates import Candidates
+from fixture_design.design.candidates import Candidates, stops
 from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
 from fixture_design.design.fitting import in_every_way, in_the_way, standing
@@ -127,9 +127,18 @@ def _by_points(asked: Asked, problem: Problem, candidates: Candidates, start: St
         "deterministic" in plan.require.get("locators", ())
         and problem.candidates.freedoms < problem.candidates.dimension
     ):
-        free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
-        return DesignResult(Answer.NO, None, free=free, reason="no candidate notices a motion")
+        return _unnoticed(problem, candidates, start)
     return _past_locators(asked, problem, start, plan, search)
+
+
+def _unnoticed(problem: Problem, candidates: Candidates, start: Start) -> DesignResult:
+    """No candidate notices a motion: so much is certain where normals are known, and elements have one choice each."""
+    free = in_world(np.linalg.svd(problem.rows)[2][-1], start.candidates.scale)
+    reason = f"no candidate notices a motion; {len(candidates)} were there"
+    if not candidates.errors.any() and not problem.vague:
+        return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
+    reason = f"{reason}, and some normals are not known exactly, or are alternatives"
+    return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=reason)
 
 
 def _with_pins(asked: Asked, problem: Problem, start: Start, plan: Plan) -> DesignResult | None:
@@ -159,6 +168,7 @@ def _past_locators(
     outcome = find(problem, asked.seed, asked.progress)
     bound = bound_of(problem, outcome)
     if outcome.found is None or refused(problem, outcome.found):
+        bound = None if bound is None else replace(bound, found=None)
         return without_layout(problem, outcome, bound, start, asked.seed)
     result, names = _drawn_up(asked, problem, outcome, bound, start, plan)
     assert result.verdict is not None
@@ -187,6 +197,10 @@ def _unstoppable(asked: Asked, problem: Problem, candidates: Candidates, start: 
     assert problem.never_stopped is not None
     free = in_world(problem.never_stopped, candidates.scale)
     reason = f"no candidate stops a motion; {len(candidates)} were there"
+    tolerances = problem.candidates.tolerances
+    if stops(problem.bounding_rows, problem.never_stopped, tolerances.zero).any():
+        reason = f"{reason}, and some stop it by no more than rounding does: a tie"
+        return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=reason)
     if not candidates.errors.any() and not problem.vague:
         return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
     certain = (

@@ -7,9 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Weights
+from fixture_design.errors import SolverError
 
 #: Costs are compared to this part of themselves [-].
 _GAP = 1e-6
+#: What `scipy.optimize.milp` ends with where there is no solution.
+_INFEASIBLE = 2
 
 
 def cheapest_cover(cuts: Sequence[Mask], costs: Weights, apart: Sequence[tuple[int, int]] = ()) -> Indices | None:
@@ -21,6 +24,9 @@ def cheapest_cover(cuts: Sequence[Mask], costs: Weights, apart: Sequence[tuple[i
     Args:
         cuts: for each which candidates hit it, shape (n,) each.  costs: > 0, shape (n,).
         apart: pairs that may not be chosen together.
+
+    Raises:
+        SolverError: HiGHS ended without an answer.
     """
     if not cuts:
         return np.zeros(0, dtype=np.int64)
@@ -83,4 +89,6 @@ def _solved(hits: np.ndarray, pairs: np.ndarray, costs: Weights, kept: Indices) 
     within = LinearConstraint(matrix, low, high)  # type: ignore[arg-type]
     whole = np.ones(len(costs))
     found = milp(costs, constraints=within, integrality=whole, bounds=Bounds(0, 1), options={"mip_rel_gap": _GAP})
+    if found.x is None and found.status != _INFEASIBLE:
+        raise SolverError(f"the cheapest cover was not found: {found.message}")
     return None if found.x is None else kept[np.flatnonzero(found.x > 1 / 2)]

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Points, Rows, Vector, Weights
-from fixture_design.cones.kernel import closure_test, tucker_partition
+from fixture_design.cones.kernel import closure_test
 from fixture_design.design.candidates import Several, flat, stops
 from fixture_design.design.cover import cheapest_cover, greedy_cover
+from fixture_design.design.near_tie import least_stopped
 from fixture_design.design.standing import Standing
 from fixture_design.tolerances import DEFAULT, Tolerances
 
@@ -118,14 +119,17 @@ def fewest_stopping(
 
 
 def free_motion(rows: Rows, tolerances: Tolerances = DEFAULT) -> Vector | None:
-    """A unit motion that none of the rows stops; None if they close for certain."""
+    """A unit motion that none of the rows stops by more than `tolerances.near`; None if they close for certain.
+
+    Near a tie the test may have neither proof; then it is the motion that is stopped least of all.
+    """
     found = closure_test(rows, tolerances)
     if found.closes:
         return None
-    if found.motion is not None:
+    if found.motion is not None and not stops(rows[None], found.motion, tolerances.near)[0]:
         return found.motion
-    escape = tucker_partition(rows, tolerances.near).escape
-    return np.eye(rows.shape[1])[0] if escape is None else escape
+    motion, closes = least_stopped(rows, tolerances)
+    return None if closes else motion
 
 
 def _at_least(cost: float, costs: Weights) -> int:

@@ -64,14 +64,16 @@ class DesignResult:
     """The outcome of a design.
 
     Attributes:
-        satisfied: yes: the layout's verdict is; no: no layout does what is asked, proven; undecided: none was found,
-            or its verdict is undecided.
+        satisfied: yes: the layout's verdict is; no: no layout of the candidates does what is asked, proven; undecided:
+            none was found, or its verdict is undecided.
         layout, verdict: None where there is none.
         steps: how it came from the start to this.
         bound: None where nothing could be said.
         out: the direction in W in which the part comes out of the locators.
         accuracy: worst error at a key feature for errors of 1 along the locators' normals, in its tolerances; without
-            features 1 / volume of the locators' rows.  best_accuracy: no locators have a smaller one [-]; None unknown.
+            features 1 / volume of the locators' rows.
+        best_accuracy: no locators with as few clamps have a smaller one [-], in the directions out that were tried (all
+            of them where ``bound.complete``); None unknown.
         margin: of closure, in the verdict's scale; None where nothing has to close.
         preload: what the clamps push with in all [N]; None where nobody asks.  best_preload: no layout with as few
             clamps needs less [N]; None unknown.  best_preload_here: with these locators none does, whatever the clamps.

@@ -71,15 +71,17 @@ def _with_bounds(
 
 
 def _whatever_closes(problem: Problem, seed: int) -> Outcome:
-    """As few elements as close; the last one is the clamp."""
+    """As few elements as close; the last ones are the clamps: one, or as many as are too many to be locators."""
     chosen, least = closing_elements(problem, seed)
     least += len(problem.kept)
     if chosen is None:
         return Outcome(None, 0, not problem.vague, least_elements=least)
     was = np.isin(chosen, problem.spare)
     new = chosen[~was]
-    clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[-1:]])
-    locators = np.concatenate([problem.kept[: len(problem.locators)], new[:-1]])
+    most = problem.limits.locators
+    clamped = 1 if most is None else max(1, len(new) + len(problem.locators) - most)
+    clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[len(new) - clamped :]])
+    locators = np.concatenate([problem.kept[: len(problem.locators)], new[: len(new) - clamped]])
     margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
     found = Found(locators, clamps, None, accuracy(problem, locators), margin)
     return Outcome(found, 0, not problem.vague, least_elements=least)

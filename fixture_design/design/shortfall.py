@@ -87,6 +87,12 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
             if not certain and problem.lets_go:
                 reason += ", where some direction is to leave all locators at once"
             return DesignResult(answer, None, steps=steps, bound=bound, reason=reason)
+    if limits.locators is not None and limits.clamps is not None:
+        allowed = limits.locators + limits.clamps + problem.supporting
+        if allowed < bound.elements:
+            reason = f"at least {bound.elements} elements are needed among these candidates, and {allowed} are allowed"
+            return DesignResult(Answer.NO if bound.complete and not problem.lets_go else Answer.UNDECIDED,
+                                None, steps=steps, bound=bound, reason=reason)  # fmt: skip
     needed = f"{bound.locators} locators and {bound.clamps} clamps"
     needed = needed if outcome.least_elements is None else f"{bound.elements} elements"
     reason = f"no layout was found; at least {needed} are needed"
