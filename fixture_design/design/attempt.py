@@ -197,11 +197,8 @@ def _unstoppable(asked: Asked, problem: Problem, candidates: Candidates, start: 
     assert problem.never_stopped is not None
     free = in_world(problem.never_stopped, candidates.scale)
     reason = f"no candidate stops a motion; {len(candidates)} were there"
-    tolerances = problem.candidates.tolerances
-    if stops(problem.bounding_rows, problem.never_stopped, tolerances.zero).any():
-        reason = f"{reason}, and some stop it by no more than rounding does: a tie"
-        return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=reason)
-    if not candidates.errors.any() and not problem.vague:
+    tie = bool(stops(problem.bounding_rows, problem.never_stopped, problem.candidates.tolerances.zero).any())
+    if not candidates.errors.any() and not problem.vague and not tie:
         return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
     certain = (
         free_for_certain(replace(asked.task, start=None), asked.ways, candidates)
@@ -210,8 +207,8 @@ def _unstoppable(asked: Asked, problem: Problem, candidates: Candidates, start: 
     )
     if certain is not None:
         return DesignResult(Answer.NO, None, steps=start.steps, free=certain, reason=reason)
-    reason = f"{reason}, and some of their normals are not known exactly"
-    return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=reason)
+    but = "some stop it by no more than rounding does" if tie else "some of their normals are not known exactly"
+    return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=f"{reason}, and {but}")
 
 
 def _useless(asked: Asked, problem: Problem, found: Found) -> Mask:

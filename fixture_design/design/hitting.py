@@ -126,7 +126,7 @@ def free_motion(rows: Rows, tolerances: Tolerances = DEFAULT) -> Vector | None:
     found = closure_test(rows, tolerances)
     if found.closes:
         return None
-    if found.motion is not None and not stops(rows[None], found.motion, tolerances.near)[0]:
+    if found.motion is not None and (rows @ found.motion).max(initial=-np.inf) <= tolerances.near:
         return found.motion
     motion, closes = least_stopped(rows, tolerances)
     return None if closes else motion
