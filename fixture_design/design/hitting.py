@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Points, Rows, Vector, Weights
-from fixture_design.cones.kernel import closure_test
+from fixture_design.cones.kernel import closure_test, tucker_partition
 from fixture_design.design.candidates import Several, flat, stops
 from fixture_design.design.cover import cheapest_cover, greedy_cover
 from fixture_design.design.near_tie import least_stopped
@@ -123,13 +123,21 @@ def free_motion(rows: Rows, tolerances: Tolerances = DEFAULT) -> Vector | None:
 
     Near a tie the test may have neither proof; then it is the motion that is stopped least of all.
     """
+    motion, closes = _quick_answer(rows, tolerances)
+    if motion is None and not closes:
+        motion, closes = least_stopped(rows, tolerances)
+    return None if closes else motion
+
+
+def _quick_answer(rows: Rows, tolerances: Tolerances) -> tuple[Vector | None, bool]:
+    """A motion that is stopped by no more than that, and whether the rows close; neither near a tie."""
     found = closure_test(rows, tolerances)
     if found.closes:
-        return None
-    if found.motion is not None and (rows @ found.motion).max(initial=-np.inf) <= tolerances.near:
-        return found.motion
-    motion, closes = least_stopped(rows, tolerances)
-    return None if closes else motion
+        return None, True
+    for motion in (found.motion, tucker_partition(rows, tolerances.near).escape):
+        if motion is not None and (rows @ motion).max(initial=-np.inf) <= tolerances.near:
+            return motion, False
+    return None, False
 
 
 def _at_least(cost: float, costs: Weights) -> int:
@@ -153,8 +161,8 @@ def strongest(
     """The motion of a largest set that has ``cover`` and still leaves something free, and who stops it.
 
     Candidates that the motion does not meet join at once; each other one if the set still does not close with it,
-    which most often gives a new motion that others do not meet either. After some that could not join the rest is left
-    out: a cut need not be the strongest to be right.
+    which most often gives a new motion that others do not meet either; near a tie it stays out. After some that could
+    not join the rest is left out: a cut need not be the strongest to be right.
     """
     cut = stops(rows[pool], motion, tolerances.near)
     cut[cover] = False
@@ -166,7 +174,7 @@ def strongest(
         values = (rows[pool[left]] @ motion).max(axis=1)
         candidate = int(left[np.argmin(values)])
         tried[candidate] = True
-        other = free_motion(np.vstack([inside, rows[pool[candidate]]]), tolerances)
+        other, _ = _quick_answer(np.vstack([inside, rows[pool[candidate]]]), tolerances)
         failures += 1
         if other is None:
             continue

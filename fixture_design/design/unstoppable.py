@@ -34,6 +34,7 @@ def free_for_certain(task: Task, ways: Ways, candidates: Candidates) -> Vector |
     scaled = motion_scaled(evidence.motion, candidates.scale.reference, candidates.scale.length)
     scaled = scaled / np.linalg.norm(scaled)
     known = candidates.errors == 0
-    if stops(candidates.rows[known], scaled, DEFAULT.near).any() or not (slips or known.all()):
+    nothing = DEFAULT.near if slips else DEFAULT.zero  # what slips along itself stops nothing, whatever rounding says
+    if stops(candidates.rows[known], scaled, nothing).any() or not (slips or known.all()):
         return None
     return evidence.motion
