@@ -17,8 +17,9 @@ from fixture_design.assembly import ContactStateGraph
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import json_schema, read_classifier, read_log, write_classifier, write_graph
 from fixture_design.layout import Pose
-from fixture_design.recognition import Classifier, Log, Sensor, c_source, numpy_source, recognize_log
+from fixture_design.recognition import Classifier, Log, Noise, Sensor, c_source, numpy_source, recognize_log
 from fixture_design.recognition.tables import Tables, discriminated
+from fixture_design.recognition.widened import Widened, widened_group
 from tests.cli.conftest import command  # noqa: F401 - a fixture
 from tests.recognition.graphs import FOUR, subgraph
 
@@ -187,15 +188,34 @@ def _compiled(source: str, folder: Path) -> Callable | None:
     return answer
 
 
-def test_discriminants_tell_what_the_sets_tell(four: Classifier) -> None:
-    """Among forces that some successor may have made, up to the widening, which both use in their own way."""
-    exact = four.with_noise(type(four.noise)())
-    tables = Tables.of(exact)
+@pytest.mark.parametrize("noise", [Noise(), Noise(0.02), Noise(0.1)])
+def test_discriminants_tell_what_the_sets_tell(four: Classifier, noise: Noise) -> None:
+    """Among forces that some successor may have made, all sets widened."""
+    noisy = four.with_noise(noise)
+    tables = Tables.of(noisy)
+    told = 0
     for wrench in WRENCHES:
-        for source in exact.ids:
-            answer = exact.recognize(wrench, previous=source)
+        for source in noisy.ids:
+            answer = noisy.recognize(wrench, previous=source)
             if answer.expected:
-                assert set(answer.states) <= set(discriminated(exact, tables, source, wrench))
+                told += len(answer.states)
+                assert answer.states == discriminated(noisy, tables, source, wrench)
+    assert told > 100
+
+
+@pytest.mark.parametrize(("group", "bounds", "wanted"), [
+    ((0,), (1e-3, 1e-3), (0, 1)),  # face 1 is implied by the other's, but only sqrt(2) as far out
+    ((0,), (1e-3, 5e-4), (0,)),
+    ((0,), (0.0, 0.0), (0,)),
+])  # fmt: skip
+def test_a_face_is_left_out_only_if_the_bounds_allow_it(
+    group: tuple[int, ...], bounds: tuple[float, float], wanted: tuple[int, ...]
+) -> None:
+    """{x <= 0, y <= 0} against {x <= y <= -x}, whose faces (1, 1) and (1, -1) imply x <= 0 by halves times sqrt(2)."""
+    ours, theirs = (np.array(rows, dtype=float) for rows in ([[0, 1], [1, 0]], [[1, 1], [1, -1]]))
+    cone = Widened(ours, np.full(2, bounds[0]))
+    other = Widened(theirs / np.sqrt(2), np.full(2, bounds[1]))
+    assert widened_group(cone, group, [other]) == wanted
 
 
 def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
