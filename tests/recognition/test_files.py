@@ -55,7 +55,9 @@ def test_a_classifier_file_reads_back(four: Classifier, file: Path) -> None:
         ('"successors": ["N1"', '"successors": ["N77"', "there is no state 'N77'"),
         ('"source": "N1"', '"source": "N77"', "there is no state 'N77'"),
         ('"faces": [[', '"faces": [[0.5, ', "a face vector has 4 numbers"),
-        ('"length": 1.0', '"length": -1.0', "> 0"),
+        ('"length": 1.0', '"length": -1.0', "length"),
+        ('"length": 1.0', '"length": 1e30', "length"),
+        ('"interpolation": "neighbours"', '"interpolation": "nearest"', "'interpolation' is none of|nearest"),
         ("fixture_design/classifier/1", "fixture_design/graph/1", "it is a contact-state graph"),
         ("fixture_design/classifier/1", "fixture_design/classifier/2", "needs a newer"),
     ],
@@ -74,6 +76,46 @@ def test_a_face_that_is_not_there(file: Path) -> None:
     data["transitions"][at]["faces"][0][0] = 99
     file.write_text(json.dumps(data))
     with pytest.raises(FileFormatError, match=rf"transitions\[{at}\].*face 99 of a cone"):
+        read_classifier(file)
+
+
+@pytest.mark.parametrize("factor", [0.0, 1e3, 1e-3, 1.0 + 1e-5])
+def test_rows_that_are_no_unit_vectors(file: Path, factor: float) -> None:
+    data = json.loads(file.read_text())
+    cone = data["states"][1]["cones"][0]
+    cone["faces"][1] = [factor * number for number in cone["faces"][1]]
+    file.write_text(json.dumps(data))
+    with pytest.raises(FileFormatError, match=r"states\[1\].cones\[0\].faces\[1\].*no unit vector"):
+        read_classifier(file)
+
+
+def _without_itself(data: dict) -> None:
+    data["states"][1]["successors"].remove(data["states"][1]["id"])
+
+
+def _to_a_stranger(data: dict) -> None:
+    strangers = {state["id"] for state in data["states"]} - set(data["states"][1]["successors"])
+    data["transitions"].append({"source": data["states"][1]["id"], "target": min(strangers), "faces": []})
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda data: data["transitions"].pop(), "there is no transition from N4 to its successor"),
+        (lambda data: data["transitions"].append(data["transitions"][0]), "there are two transitions from N1 to N1"),
+        (lambda data: data["states"][0]["successors"].append("N1"), "N1 is there twice"),
+        (_without_itself, "not among its own successors"),
+        (_to_a_stranger, "is no successor of"),
+    ],
+)
+def test_transitions_that_do_not_fit(file: Path, change: Callable, words: str) -> None:
+    data = json.loads(file.read_text())
+    for k, state in enumerate(data["states"]):  # names in the message
+        file.write_text(file.read_text().replace(f'"{state["id"]}"', f'"N{k + 1}"'))
+    data = json.loads(file.read_text())
+    change(data)
+    file.write_text(json.dumps(data))
+    with pytest.raises(FileFormatError, match=words):
         read_classifier(file)
 
 
