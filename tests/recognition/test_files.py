@@ -17,7 +17,16 @@ from fixture_design.assembly import ContactStateGraph
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import json_schema, read_classifier, read_log, write_classifier, write_graph
 from fixture_design.layout import Pose
-from fixture_design.recognition import Classifier, Log, Noise, Sensor, c_source, numpy_source, recognize_log
+from fixture_design.recognition import (
+    Classifier,
+    Log,
+    Noise,
+    Sensor,
+    build_classifier,
+    c_source,
+    numpy_source,
+    recognize_log,
+)
 from fixture_design.recognition.tables import Tables, discriminated
 from fixture_design.recognition.widened import Widened, widened_group
 from tests.cli.conftest import command  # noqa: F401 - a fixture
@@ -139,6 +148,8 @@ LOG = "t [s], fx [N], fy, mz [N m], fz\n0, 0, -5, 1, 0\n\n# later\n0.1, 0, -5, 1
         (LOG.replace("fz", "torque"), r"unknown column 'torque'"),
         (LOG.replace("fz", "fy"), r"the column 'fy' is there twice"),
         (LOG.replace("fz", "dx"), r"the log has no column 'dy', 'rz'"),
+        (LOG.replace("\n0.1,", "\n-0.1,"), r"log.csv: row 2: time runs backwards; found -0.1 s after 0 s"),
+        ("t,dx,dy,rz\n0,1,2,3\n", r"the log has no column 'fx', 'fy', 'mz'"),
         (LOG.splitlines()[0], r"a header and no rows"),
         ("", r"the log is empty"),
     ],
@@ -160,6 +171,41 @@ def test_a_log(tmp_path: Path) -> None:
     twists = read_log(path, 2).twists
     assert twists is not None
     np.testing.assert_array_equal(twists, [[2, 3, 1]])
+
+
+def test_a_log_of_displacements_alone(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
+    path = tmp_path / "log.csv"
+    path.write_text("t,dx,dy,rz\n0,0,1,0\n1,0,-1,0\n")
+    log = read_log(path, 2, "displacement")
+    np.testing.assert_array_equal(log.wrenches, np.zeros((2, 3)))
+    np.testing.assert_array_equal(log.twists, [[0, 1, 0], [0, -1, 0]])
+    made = build_classifier(subgraph(graph, FOUR), measure="displacement", discriminants=False)
+    write_classifier(made, tmp_path / "c.json")
+    rows = json.loads(command("recognize", tmp_path / "c.json", path, "--json").out)["rows"]
+    on_top = next(state.id for state in made.states if state.contacts == ("apex 3 - facet 5",))
+    assert on_top in rows[0]["states"]
+    assert on_top not in rows[1]["states"]
+    path.write_text("t,fx,fy,mz\n0,1,2,3\n")
+    assert "has no column 'dx', 'dy', 'rz'" in command("recognize", tmp_path / "c.json", path).err
+
+
+@pytest.mark.parametrize("argument", ["abc", [[1.0], [2.0, 3.0]], ["x", 1.0, 2.0]])
+def test_words_are_no_numbers(four: Classifier, argument: object) -> None:
+    for call in (
+        lambda: four.recognize(argument),  # type: ignore[arg-type]
+        lambda: Log.of(argument, WRENCHES),  # type: ignore[arg-type]
+        lambda: Log.of([0.0], argument),  # type: ignore[arg-type]
+        lambda: Sensor.of(2, None, argument),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(InputError, match="must be numbers"):
+            call()
+
+
+def test_a_sensor_in_space_for_a_planar_log(four: Classifier) -> None:
+    with pytest.raises(InputError, match="a sensor of 6 numbers, a log of 3"):
+        recognize_log(four, Log.of([0.0], WRENCHES[:1]), Sensor.of(3))
+    with pytest.raises(InputError, match="planar or spatial"):
+        Sensor.of(4)
 
 
 def test_arrays_as_a_log(four: Classifier) -> None:
@@ -207,6 +253,14 @@ def test_exported_code_says_the_same(four: Classifier, four_jointly: Classifier,
             if compiled is not None:
                 assert compiled(classifier, source, wrench, twist) == here
     assert len(seen) > 5
+    for bad in ([np.nan, 0.0, 1.0], [0.0, np.inf, 0.0]):
+        wrench, twist = np.array(bad), np.ones(3) if joint else None
+        for source in classifier.ids:
+            assert functions["next_states"](source, wrench, twist) == []
+            assert compiled is None or compiled(classifier, source, wrench, twist) == ()
+            if joint:
+                assert functions["next_states"](source, np.ones(3), wrench) == []
+                assert compiled is None or compiled(classifier, source, np.ones(3), wrench) == ()
     if compiled is None:
         pytest.skip("there is no C compiler `cc`: only the numpy function was compared")
 
@@ -285,9 +339,22 @@ def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -
     bad = command("recognize", tmp_path / "c.json", log)
     assert bad.code == 2
     assert "row 1, column fy" in bad.err
-    assert command("recognize", tmp_path / "c.json", log, "--sensor", "1,2").code == 2
+    log.write_text("t,fx,fy,mz\n0,1,100,500\n")
     assert command("recognize", tmp_path / "graph.json", log).code == 2
     assert command("classifier", tmp_path / "c.json").code == 2
-    assert command("classifier", tmp_path / "graph.json", "--friction", "-1").code == 2
+    assert "set --floor" in made.err
+    for option, value in (("--friction", "-1"), ("--noise", "nan"), ("--floor", "-1"), ("--seed", "-1")):
+        bad = command("classifier", tmp_path / "graph.json", option, value)
+        assert bad.code == 2
+        assert option in bad.err
+        assert "graph.json" not in bad.err
+    bad = command("recognize", tmp_path / "c.json", log, "--start", "N99")
+    assert bad.code == 2
+    assert "--start: no state is called 'N99'" in bad.err
+    for option in ("--sensor", "--tare"):
+        bad = command("recognize", tmp_path / "c.json", log, option, "1,2")
+        assert bad.code == 2
+        assert f"{option} takes 3 numbers" in bad.err
+        assert "log.csv" not in bad.err
     shown = command("classifier", tmp_path / "graph.json", "--json", "--interpolation", "hull")
     assert json.loads(shown.out)["schema"] == "fixture_design/classifier/1"
