@@ -59,9 +59,9 @@ def state_set(
 ) -> MeasurementSet:
     """S_i of a state, widened so that it holds the sets of all samples there are, and of denser ones.
 
-    Configurations between these and the ends of the state may be further out: of 200 to 320 fresh ones of a state of
-    Figure 14 with coincident apices and friction 0.2 none to nine, by 0.023 at most. The samples are those of the state and of all states with more contacts, where the same contacts hold: its closure
-    has the extremes of its forces.
+    The samples are those of the state and of all states with more contacts, where the same contacts hold: its closure
+    has the extremes of its forces. Configurations between these and the state's ends may be further out: of some 200 to
+    320 fresh ones of a state of Figure 14 with coincident apices and friction 0.2 none to nine, by 0.023 at most.
     """
     pool = _pool(graph, geometry, state, recipe)
     cones = _cones(geometry, state, pool, recipe)
