@@ -67,6 +67,10 @@ FARTHEST = 1e9
 #: Parts smaller than this are mistakes, and Drake refuses them some steps further down [m].
 SMALLEST_PART = 1e-9
 
+#: Rows of a file that are said to be unit vectors are so to this [-]: well above what digits of a file lose, and far
+#: below any bound by which sets are widened.
+UNIT_ROW = 1e-6
+
 #: Largest coefficient of friction [-]: nothing rubs like that, and squares of it keep their digits beside 1.
 MOST_FRICTION = 1e3
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from fixture_design.cli.messages import say
-from fixture_design.cli.numbers import numbers
+from fixture_design.cli.numbers import at_least_zero, numbers
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, read_graph
 
@@ -36,13 +37,13 @@ def classifier(
     ] = None,
     noise: Annotated[float, typer.Option("--noise", help="Bound of the error of forces, relative to them.")] = 0.0,
     twist_noise: Annotated[float, typer.Option("--twist-noise", help="Likewise of displacements.")] = 0.0,
-    floor: Annotated[float, typer.Option("--floor", help="Forces up to this tell nothing (N).")] = 0.0,
+    floor: Annotated[float, typer.Option("--floor", help="Forces up to this tell nothing (N); not with --mass.")] = 0.0,
     interpolation: Annotated[
         Literal["neighbours", "none", "hull"], typer.Option("--interpolation", help="What is between samples.")
     ] = "neighbours",
     accuracy: Annotated[float, typer.Option("--accuracy", help="Of the interpolation (sine of an angle).")] = 0.005,
     fewest: Annotated[bool, typer.Option("--fewest", help="The smallest groups of discriminants.")] = False,
-    seed: Annotated[int, typer.Option("--seed", help="Of the samples that sets are checked on.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", help="Of the samples that sets are checked on.", min=0)] = 0,
     c_file: Annotated[Path | None, typer.Option("--c", help="Discriminants as C code.", metavar="OUT.c")] = None,
     python_file: Annotated[
         Path | None, typer.Option("--python", help="Discriminants as a numpy function.", metavar="OUT.py")
@@ -53,7 +54,15 @@ def classifier(
 
     Exit code: 0, 2 bad input.
     """
+    for value, option in ((friction, "--friction"), (mass, "--mass"), (noise, "--noise"),
+                          (twist_noise, "--twist-noise"), (floor, "--floor")):  # fmt: skip
+        at_least_zero(value, option)
+    if not (isfinite(accuracy) and accuracy > 0):
+        raise InputError("--accuracy takes a number > 0", found=repr(accuracy))
     known = read_graph(graph)
+    if noise > 0 and floor == 0 and mass == 0 and measure != "displacement":
+        say("--noise without --floor: forces of a part in free air are noise, and fit no state or a wrong one; "
+            "set --floor to what the sensor shows then (N)")  # fmt: skip
     from fixture_design.recognition import Noise, build_classifier  # noqa: PLC0415 - after the arguments are known good
 
     try:

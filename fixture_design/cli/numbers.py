@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 from fixture_design.errors import InputError
 
 
@@ -17,3 +19,13 @@ def numbers(text: str | None, option: str) -> list[float] | None:
         return [float(number) for number in text.strip("[] ").replace(",", " ").split()]
     except ValueError as cause:
         raise InputError(f"{option} takes numbers", found=text, expected=f"{option} 0,1,0.5") from cause
+
+
+def at_least_zero(value: float, option: str) -> None:
+    """Nothing, for a number that an option may be.
+
+    Raises:
+        InputError: one below zero, or not finite.
+    """
+    if not (isfinite(value) and value >= 0):
+        raise InputError(f"{option} takes a number >= 0", found=repr(value))

@@ -10,7 +10,7 @@ import typer
 
 from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.numbers import numbers
-from fixture_design.errors import InputError
+from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.io import dumps
 from fixture_design.layout import Pose
 
@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 def recognize(
     classifier: Annotated[Path, typer.Argument(help="Classifier file.", metavar="CLASSIFIER", readable=False)],
-    log: Annotated[Path, typer.Argument(help="Columns t, fx, ..., mz (s, N, N m).", metavar="LOG.csv", readable=False)],
+    log: Annotated[
+        Path,
+        typer.Argument(
+            help="Columns t, fx, ..., mz, dx, ..., rz (s, N, N m, m, rad).", metavar="LOG.csv", readable=False
+        ),
+    ],
     start: Annotated[
         str | None, typer.Option("--start", help="The state before the first row, or several.", metavar="N1,N2")
     ] = None,
@@ -46,10 +51,12 @@ def recognize(
     from fixture_design.recognition import recognize_log  # noqa: PLC0415 - as above
 
     known = read_classifier(classifier)
-    rows = read_log(log, known.signals.plane)
+    rows = read_log(log, known.signals.plane, known.signals.measure)
     before = None if start is None else [name.strip() for name in start.split(",")]
+    mounted = _sensor(known, rows, sensor, tare, tare_rows)
+    _require_states(known, before)
     try:
-        answers = recognize_log(known, rows, _sensor(known, rows, sensor, tare, tare_rows), before)
+        answers = recognize_log(known, rows, mounted, before)
     except InputError as error:
         raise error.within(log) from error
     if as_json:
@@ -60,6 +67,14 @@ def recognize(
         raise typer.Exit(ExitCode.UNDECIDED)
 
 
+def _require_states(known: Classifier, names: list[str] | None) -> None:
+    try:
+        for name in names or ():
+            known.state(name)
+    except UnknownNameError as error:
+        raise error.within("--start") from error
+
+
 def _sensor(known: Classifier, rows: Log, pose: str | None, tare: str | None, tare_rows: int) -> Sensor:
     from fixture_design.recognition import Sensor  # noqa: PLC0415 - as above
 
@@ -68,6 +83,8 @@ def _sensor(known: Classifier, rows: Log, pose: str | None, tare: str | None, ta
     size = 3 * (plane - 1)
     if where is not None and len(where) != size:
         raise InputError(f"--sensor takes {size} numbers here", found=pose)
+    if zero is not None and len(zero) != size:
+        raise InputError(f"--tare takes {size} numbers here", found=tare)
     if zero is not None and tare_rows:
         raise InputError("--tare and --tare-rows exclude each other")
     if tare_rows > len(rows):

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone
+from fixture_design.io.classifier_problems import classifier_problems
 from fixture_design.io.classifier_records import ClassifierRecord, StateRecord
 from fixture_design.io.documents import read_document
 from fixture_design.io.plain_words import validated
-from fixture_design.io.problems import Problem, content_error
+from fixture_design.io.problems import content_error
 from fixture_design.io.schema_key import require_schema
 from fixture_design.io.text_file import write_text
 from fixture_design.recognition import (
@@ -80,7 +80,7 @@ def read_classifier(path: str | Path) -> Classifier:
     plane = 2 if record.space == "planar" else 3
     some = record.signals
     signals = Signals(some.measure, some.axes, plane, some.length, some.weight)
-    if problems := list(_problems(record, signals.size)):
+    if problems := classifier_problems(record, signals.size):
         raise content_error(problems, document)
     made = record.run
     return Classifier(
@@ -112,42 +112,3 @@ def _state(state: StateClass) -> dict[str, Any]:
 def _measured(state: StateRecord, size: int) -> MeasurementSet:
     cones = [PolyhedralConvexCone.from_faces(cone.faces, cone.equalities, dimension=size) for cone in state.cones]
     return MeasurementSet(ConeUnion.of(cones), Widening(state.widening.force, state.widening.displacement))
-
-
-def _problems(record: ClassifierRecord, size: int) -> Iterator[Problem]:
-    """What the keys alone do not tell: names, numbers of coordinates, faces that there are."""
-    known: dict[str, StateRecord] = {}
-    for i, state in enumerate(record.states):
-        if state.id in known:
-            yield Problem(("states", i, "id"), f"there are two states {state.id!r}", expected="another id")
-        known[state.id] = state
-        for k, cone in enumerate(state.cones):
-            for key, rows in (("faces", cone.faces), ("equalities", cone.equalities)):
-                for m, row in enumerate(rows):
-                    if len(row) != size:
-                        place = ("states", i, "cones", k, key, m)
-                        yield Problem(place, f"a face vector has {len(row)} numbers", expected=f"{size} here")
-    for i, state in enumerate(record.states):
-        for k, name in enumerate(state.successors):
-            if name not in known:
-                yield Problem(("states", i, "successors", k), f"there is no state {name!r}", expected="a state's id")
-    yield from _transition_problems(record, known)
-
-
-def _transition_problems(record: ClassifierRecord, known: dict[str, StateRecord]) -> Iterator[Problem]:
-    for i, each in enumerate(record.transitions):
-        unknown = [(key, name) for key, name in (("source", each.source), ("target", each.target)) if name not in known]
-        for key, name in unknown:
-            yield Problem(("transitions", i, key), f"there is no state {name!r}", expected="a state's id")
-        if unknown:
-            continue
-        cones = known[each.target].cones
-        if len(each.faces) != len(cones):
-            problem = f"{len(each.faces)} groups of faces for the {len(cones)} cones of {each.target}"
-            yield Problem(("transitions", i, "faces"), problem, expected="one for each cone")
-            continue
-        for k, (faces, cone) in enumerate(zip(each.faces, cones, strict=True)):
-            count = len(cone.faces) + 2 * len(cone.equalities)
-            if any(face >= count for face in faces):
-                problem = f"face {max(faces)} of a cone that has {count}"
-                yield Problem(("transitions", i, "faces", k), problem, expected=f"numbers from 0 to {count - 1}")

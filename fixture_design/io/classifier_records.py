@@ -6,11 +6,14 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from fixture_design.io.record_types import NotNegative, Number, Positive, Record, Text
+from fixture_design.io.record_types import NotNegative, Number, Record, Text
+from fixture_design.recognition.measurement import Interpolation
+from fixture_design.tolerances import FARTHEST, SMALLEST_PART
 
 Row = Annotated[tuple[Number, ...], Field(strict=False, min_length=1)]
 Rows = Annotated[tuple[Row, ...], Field(strict=False)]
 Index = Annotated[int, Field(ge=0)]
+Length = Annotated[float, Field(allow_inf_nan=False, ge=SMALLEST_PART, le=FARTHEST)]
 Names = Annotated[tuple[Text, ...], Field(strict=False)]
 
 
@@ -59,7 +62,7 @@ class SignalsRecord(Record):
     WANTED: ClassVar[str] = "{measure: force, axes: fixed, length: x}"
     measure: Literal["force", "displacement", "both"]
     axes: Literal["fixed", "part"]
-    length: Positive
+    length: Length
     weight: NotNegative = 0.0
 
 
@@ -79,7 +82,7 @@ class MadeRecord(Record):
     version: Text
     friction: NotNegative
     edges: int
-    interpolation: Text
+    interpolation: Interpolation
     accuracy: NotNegative
     seed: int
     smallest: bool

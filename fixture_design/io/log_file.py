@@ -1,7 +1,8 @@
 """Logs of wrenches and displacements as CSV.
 
 The first line names the columns, in any order: t, fx, fy, fz, mx, my, mz, and for displacements dx, dy, dz, rx, ry, rz;
-in the plane t, fx, fy, mz, and dx, dy, rz, where the others may be there and are left out. A name may be followed by
+in the plane t, fx, fy, mz, and dx, dy, rz, where the others may be there and are left out. Where displacements alone
+are measured the wrenches may be left out. A name may be followed by
 its unit in brackets, which must be that of the column: `fx [N]`, `mz [N m]`, `t [s]`, `dx [m]`, `rz [rad]`. Blank
 lines, and lines that begin with #, are left out. A row's number counts the others from 1. A simulation adds a column
 `truth`, the contacts that there really were: `apex 4 - facet 7; facet 2 - apex 1`, nothing for none.
@@ -17,9 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
-from fixture_design.errors import FileFormatError
+from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io.documents import read_bytes
 from fixture_design.recognition.log import Log
+from fixture_design.recognition.signals import Measure
 from fixture_design.tolerances import MOST_FORCE
 
 _WRENCH = {2: ("fx", "fy", "mz"), 3: ("fx", "fy", "fz", "mx", "my", "mz")}
@@ -42,23 +44,26 @@ _UNITS = {
 _HEADING = re.compile(r"\s*([^\s\[\](]+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
 
-def read_log(path: str | Path, plane: int) -> Log:
+def read_log(path: str | Path, plane: int, measure: Measure = "force") -> Log:
     """The log in a CSV file.
 
     Args:
         plane: 2 in the plane, 3 in space.
+        measure: "displacement": there need be no wrenches, but displacements; else wrenches must be there,
+            and displacements may.
 
     Raises:
         FileFormatError: the file cannot be read, is empty, has not the columns, or other units, or a cell is no finite
-            number of a plausible size; with line, row and column.
+            number of a plausible size; with line, row and column. Or time runs backwards.
     """
     path = Path(path)
     lines = _lines(path)
     header = next(lines, None)
     if header is None:
-        raise FileFormatError("the log is empty", source=path, expected=_expected(plane))
-    columns = _columns(header[1], path, header[0], plane)
-    wanted = ["t", *_WRENCH[plane], *(_TWIST[plane] if _TWIST[plane][0] in columns else ())]
+        raise FileFormatError("the log is empty", source=path, expected=_expected(plane, measure))
+    columns = _columns(header[1], path, header[0], plane, measure)
+    blocks = [names if names[0] in columns else () for names in (_WRENCH[plane], _TWIST[plane])]
+    wanted = ["t", *blocks[0], *blocks[1]]
     places = [columns.index(name) for name in wanted]
     rows, truths = [], []
     for row, (line, cells) in enumerate(_checked(lines, len(columns), path), start=1):
@@ -67,9 +72,13 @@ def read_log(path: str | Path, plane: int) -> Log:
             truths.append(tuple(filter(None, map(str.strip, cells[columns.index(_TRUTH)].split(_AND)))))
     if not rows:
         raise FileFormatError("the log has a header and no rows", source=path, expected="a row for each sample")
-    size = len(_WRENCH[plane])
-    twists = [row[1 + size :] for row in rows] if len(wanted) > 1 + size else None
-    return Log.of([row[0] for row in rows], [row[1 : 1 + size] for row in rows], twists, truths or None)
+    size = len(blocks[0])
+    wrenches = [row[1 : 1 + size] for row in rows] if size else None
+    twists = [row[1 + size :] for row in rows] if blocks[1] else None
+    try:
+        return Log.of([row[0] for row in rows], wrenches, twists, truths or None)
+    except InputError as error:
+        raise FileFormatError(error.problem, source=path, found=error.found, expected=error.expected) from error
 
 
 def write_log(log: Log, path: str | Path) -> None:
@@ -108,16 +117,18 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
         raise FileFormatError(f"the log is no CSV: {cause}", source=path, place=f"line {reader.line_num}") from cause
 
 
-def _columns(headings: Sequence[str], path: Path, line: int, plane: int) -> list[str]:
+def _columns(headings: Sequence[str], path: Path, line: int, plane: int, measure: Measure) -> list[str]:
     place = f"line {line}"
     names = [_name(heading, path, place) for heading in headings]
     if twice := [name for name in dict.fromkeys(names) if names.count(name) > 1]:
         raise FileFormatError(f"the column {twice[0]!r} is there twice", source=path, place=place)
-    twist = [name for name in _TWIST[plane] if name in names]
-    missing = [name for name in ("t", *_WRENCH[plane], *(_TWIST[plane] if twist else ())) if name not in names]
+    needed = {_WRENCH[plane]: measure != "displacement", _TWIST[plane]: measure == "displacement"}
+    # a block is whole, or not there
+    blocks = [block for block, need in needed.items() if need or any(name in names for name in block)]
+    missing = [name for name in ("t", *(name for block in blocks for name in block)) if name not in names]
     if missing:
         problem = f"the log has no column {', '.join(map(repr, missing))}"
-        raise FileFormatError(problem, source=path, place=place, expected=_expected(plane))
+        raise FileFormatError(problem, source=path, place=place, expected=_expected(plane, measure))
     return names
 
 
@@ -158,5 +169,7 @@ def _number(cell: str, column: str, path: Path, line: int, row: int) -> float:
     return value
 
 
-def _expected(plane: int) -> str:
+def _expected(plane: int, measure: Measure) -> str:
+    if measure == "displacement":
+        return f"the columns t, {', '.join(_TWIST[plane])} and perhaps {', '.join(_WRENCH[plane])}"
     return f"the columns t, {', '.join(_WRENCH[plane])} and perhaps {', '.join(_TWIST[plane])}"

@@ -14,6 +14,7 @@ from fixture_design.errors import InputError
 from fixture_design.recognition.classifier import Classifier, Made, Noise, StateClass, Transition
 from fixture_design.recognition.discriminants import Against, Faces, discriminants, smallest, united
 from fixture_design.recognition.measurement import Interpolation, MeasurementSet, oriented_rows
+from fixture_design.recognition.numbers_of import numbers_of
 from fixture_design.recognition.sample_cones import Physics
 from fixture_design.recognition.signals import Axes, Measure, Signals
 from fixture_design.recognition.state_set import Recipe, state_set
@@ -62,6 +63,8 @@ def build_classifier(
     if not graph.states:
         raise InputError("the graph has no states", expected="a graph that `fixture-design states` found")
     geometry = geometry_of(graph.assembly)
+    if seed < 0:
+        raise InputError("a seed must be a whole number >= 0", found=str(seed))
     plane = 2 if geometry.dimension == 3 else 3
     physics = _physics(plane, friction, edges, mass, center, gravity)
     scale = geometry.radius if length is None else _positive("length", length)
@@ -149,7 +152,7 @@ def _physics(
 def _point(name: str, given: ArrayLike | None, default: np.ndarray) -> np.ndarray:
     if given is None:
         return default
-    values = np.asarray(given, dtype=np.float64)
+    values = numbers_of(given, name)
     if values.shape != default.shape or not np.isfinite(values).all():
         raise InputError(f"{name} must be {len(default)} finite numbers", found=str(values.tolist()))
     return values

@@ -22,7 +22,7 @@ class Noise:
 
     Attributes:
         force: largest error of a wrench, relative to it, [f; m / length] [-].  displacement: likewise of a twist [-].
-        floor: wrenches shorter than this tell nothing [N]: they are zero, but for noise.
+        floor: wrenches shorter than this tell nothing [N]: they are zero, but for noise. Not used with a known weight.
     """
 
     force: float = 0.0
@@ -134,7 +134,8 @@ class Classifier:
 
         A state is possible if the measurement is in its set, widened by the set's own bound and by the noise. With
         both, p . dq must not be negative either, by more than that: a part that is pushed does not move against the
-        push. A measurement that has no direction (shorter than the floor) is in all sets.
+        push; with a known weight, whose work p . dq leaves out, this is not asked. A measurement that has no direction
+        (shorter than the floor) is in all sets; with a known weight there is no floor, since no force tells something.
 
         Args:
             wrench: p = [f; m], the force applied to the part (2-16), shape (3,) or (6,) [N, N m]; moments about the

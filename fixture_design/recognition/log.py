@@ -10,6 +10,7 @@ import numpy as np
 from fixture_design.arrays import ArrayLike, Rows, Weights, read_only
 from fixture_design.errors import InputError
 from fixture_design.recognition.classifier import Classifier, Recognition
+from fixture_design.recognition.numbers_of import numbers_of
 from fixture_design.recognition.recogniser import Recogniser
 from fixture_design.recognition.sensor import Sensor
 from fixture_design.tolerances import MOST_FORCE
@@ -20,7 +21,8 @@ class Log:
     """Measurements in a row, in the sensor's frame.
 
     Attributes:
-        times: shape (n,) [s].  wrenches: applied to the part, shape (n, d).  twists: likewise, or None.
+        times: shape (n,) [s].  wrenches: applied to the part, shape (n, d); zeros, which tell nothing, where none were
+            measured.  twists: likewise, or None.
         truth: of each row the contacts that there really were, sorted, where somebody knows; only for scoring.
     """
 
@@ -33,29 +35,33 @@ class Log:
     def of(
         cls,
         times: ArrayLike,
-        wrenches: ArrayLike,
+        wrenches: ArrayLike | None,
         twists: ArrayLike | None = None,
         truth: Sequence[tuple[str, ...]] | None = None,
     ) -> Log:
         """A log of arrays.
 
         Raises:
-            InputError: shapes that do not fit, no row, numbers that are not finite or beyond any force; with the row,
-                counted from 1.
+            InputError: shapes that do not fit, no row, numbers that are not finite or beyond any force, times that run
+                backwards; with the row, counted from 1.
         """
-        t, p = np.asarray(times, dtype=np.float64), np.asarray(wrenches, dtype=np.float64)
+        t = numbers_of(times, "times")
+        v = None if twists is None else numbers_of(twists, "twists")
+        if wrenches is None and v is None:
+            raise InputError("a log has wrenches, twists or both", found="neither")
+        p = np.zeros_like(v) if wrenches is None else numbers_of(wrenches, "wrenches")
         if t.ndim != 1 or p.ndim != 2 or len(t) != len(p) or p.shape[1] not in (3, 6):
             raise InputError(
                 "a log is n times and n wrenches of 3 or 6 numbers", found=f"arrays of shape {t.shape} and {p.shape}"
             )
         if not len(t):
             raise InputError("the log has no rows")
-        v = None if twists is None else np.asarray(twists, dtype=np.float64)
         if v is not None and v.shape != p.shape:
             raise InputError("twists must be as many as wrenches", found=f"arrays of shape {p.shape} and {v.shape}")
         for name, rows in (("time", t[:, None]), ("wrench", p), ("twist", v)):
             if rows is not None:
                 _require_usable(name, rows)
+        _require_forwards(t)
         if truth is not None and len(truth) != len(t):
             raise InputError("true contacts must be as many as wrenches", found=f"{len(truth)} for {len(t)} rows")
         contacts = None if truth is None else tuple(tuple(sorted(some)) for some in truth)
@@ -86,6 +92,8 @@ def recognize_log(
     if classifier.signals.measure == "displacement" and log.twists is None:
         raise InputError("this classifier tells states from displacements, and the log has none")
     sensor = sensor or Sensor.of(classifier.signals.plane)
+    if len(sensor.tare) != size:
+        raise InputError(f"a sensor of {len(sensor.tare)} numbers, a log of {size}", expected="both planar or spatial")
     wrenches = sensor.wrenches(log.wrenches)
     twists = [None] * len(log) if log.twists is None else list(sensor.twists(log.twists))
     recogniser, answers = Recogniser.start(classifier, known), []
@@ -94,6 +102,16 @@ def recognize_log(
         assert recogniser.latest is not None
         answers.append(recogniser.latest)
     return answers
+
+
+def _require_forwards(times: Weights) -> None:
+    back = np.flatnonzero(np.diff(times) < 0)
+    if len(back):
+        k = int(back[0]) + 1
+        raise InputError(
+            f"row {k + 1}: time runs backwards", found=f"{times[k]:g} s after {times[k - 1]:g} s",
+            expected="times that do not decrease",
+        )  # fmt: skip
 
 
 def _require_usable(name: str, rows: Rows) -> None:

@@ -10,6 +10,7 @@ from fixture_design.arrays import ArrayLike, Rows, read_only
 from fixture_design.contacts import cross
 from fixture_design.errors import InputError
 from fixture_design.layout import Pose
+from fixture_design.recognition.numbers_of import numbers_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +32,10 @@ class Sensor:
         Raises:
             InputError: numbers that do not fit.
         """
+        if plane not in (2, 3):
+            raise InputError("a sensor is planar or spatial", found=f"plane {plane}", expected="2 or 3")
         size = 3 * (plane - 1)
-        zero = np.zeros(size) if tare is None else np.asarray(tare, dtype=np.float64)
+        zero = np.zeros(size) if tare is None else numbers_of(tare, "a tare")
         if zero.shape != (size,) or not np.isfinite(zero).all():
             raise InputError(f"a tare is {size} finite numbers here", found=str(zero.tolist()))
         return cls(Pose.identity(plane) if pose is None else pose, read_only(zero))

@@ -24,6 +24,7 @@ import numpy as np
 
 from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.errors import InputError
+from fixture_design.recognition.numbers_of import numbers_of
 
 Measure = Literal["force", "displacement", "both"]
 
@@ -115,7 +116,7 @@ class Signals:
     def _checked(self, values: ArrayLike | None, name: str) -> Vector:
         if values is None:
             raise InputError(f"this classifier needs a {name}", expected=f"{self.wrench_size} numbers")
-        vector = np.asarray(values, dtype=np.float64)
+        vector = numbers_of(values, f"a {name}")
         if vector.shape != (self.wrench_size,):
             raise InputError(f"a {name} has {self.wrench_size} numbers here", found=f"an array of shape {vector.shape}")
         if not np.isfinite(vector).all():

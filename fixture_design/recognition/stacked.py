@@ -9,7 +9,7 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Rows, Vector, Weights
 from fixture_design.recognition.measurement import MeasurementSet, oriented_rows
-from fixture_design.tolerances import DEFAULT
+from fixture_design.recognition.widened import bounds_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,15 +36,12 @@ class Stacked:
         count = 0
         for found in sets:
             states.append(len(cones))
-            # a tie is inside: sums of products leave 1e-16 where a zero is
-            both = found.widening.force + force + DEFAULT.tie, found.widening.displacement + displacement + DEFAULT.tie
             for cone in found.cones:
                 faces = oriented_rows(cone)
                 faces = faces if len(faces) else np.zeros((1, cone.dimension))
-                of_force = np.abs(faces[:, :force_size]).max(axis=1, initial=0.0) > 0
                 cones.append(count)
                 rows.append(faces)
-                bounds.append(np.where(of_force, both[0], both[1]))
+                bounds.append(bounds_of(faces, force_size, found.widening, force, displacement))
                 count += len(faces)
         return cls(np.ascontiguousarray(np.vstack(rows)), np.concatenate(bounds), np.array(cones), np.array(states))
 

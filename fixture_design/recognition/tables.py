@@ -9,8 +9,8 @@ import numpy as np
 from fixture_design.arrays import ArrayLike, Indices, Rows, Weights
 from fixture_design.errors import InputError
 from fixture_design.recognition.classifier import Classifier
-from fixture_design.recognition.measurement import oriented_rows
-from fixture_design.tolerances import DEFAULT
+from fixture_design.recognition.discriminants import Faces
+from fixture_design.recognition.widened import Widened, widened_cones, widened_group
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Tables:
 
     @classmethod
     def of(cls, classifier: Classifier) -> Tables:
-        """The tables of a classifier, with only those faces that some transition needs.
+        """The tables of a classifier, with only those faces that some transition needs, its sets and noise widening.
 
         Raises:
             InputError: a classifier without discriminants.
@@ -49,8 +49,9 @@ class Tables:
         transition_start, target, source_start = [0], [], [0]
         for source in ids:
             for transition in (some for some in classifier.transitions if some.source == source):
+                others = [name for name in classifier.state(source).successors if name != transition.target]
                 for cone, faces in enumerate(transition.faces):
-                    tables.add(transition.target, cone, faces)
+                    tables.add(transition.target, cone, faces, others)
                 transition_start.append(len(tables.group_start) - 1)
                 target.append(ids.index(transition.target))
             source_start.append(len(target))
@@ -80,25 +81,21 @@ class _Growing:
         self.chosen: list[int] = []
         self.group_start = [0]
         self._known: dict[tuple[str, int, int], int] = {}
-        self._faces = {
-            (state.id, k): oriented_rows(cone)
+        noise, size = classifier.noise, classifier.signals.force_size
+        self._cones: dict[str, list[Widened]] = {
+            state.id: widened_cones(state.measured, size, noise.force, noise.displacement)
             for state in classifier.states
-            for k, cone in enumerate(state.measured.cones)
         }
-        self._noise, self._force_size = classifier.noise, classifier.signals.force_size
-        self._widening = {state.id: state.measured.widening for state in classifier.states}
 
-    def add(self, state: str, cone: int, faces: tuple[int, ...]) -> None:
-        for face in faces:
+    def add(self, state: str, cone: int, group: Faces, others: list[str]) -> None:
+        """A group of a state's cone, which tells it from others."""
+        widened = self._cones[state][cone]
+        for face in widened_group(widened, group, [some for other in others for some in self._cones[other]]):
             key = (state, cone, face)
             if key not in self._known:
                 self._known[key] = len(self.rows)
-                row = self._faces[state, cone][face]
-                of_force = bool(np.abs(row[: self._force_size]).max(initial=0.0) > 0)
-                widening = self._widening[state]
-                block = "force" if of_force else "displacement"
-                self.rows.append(row)
-                self.bounds.append(getattr(widening, block) + getattr(self._noise, block) + DEFAULT.tie)
+                self.rows.append(widened.rows[face])
+                self.bounds.append(float(widened.bounds[face]))
             self.chosen.append(self._known[key])
         self.group_start.append(len(self.chosen))
 
@@ -108,8 +105,8 @@ def discriminated(
 ) -> tuple[str, ...]:
     """The states that the discriminants leave after ``source``: those whose DT holds the measurement.
 
-    Sure only of measurements that are in the set of some successor: between these the discriminants tell as the whole
-    sets do, and of others they say nothing.
+    Sure only of measurements that are in the widened set of some successor: between these the discriminants tell as the
+    whole sets do, and of others they say nothing. The work of force and displacement is not tested.
 
     Raises:
         InputError, UnknownNameError: as `Classifier.recognize`.

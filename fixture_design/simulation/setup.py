@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+from fixture_design.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -46,13 +49,19 @@ class WristSensor:
         noise: standard deviation of the error's length, relative to the wrench's [f; m / length] [-].
         bias: what the tare left, [fx, fy, m / length] each up to this, the same for a run [N].
         delay: time constant of its low-pass filter [s].
-        seed: of noise and bias.
+        seed: of noise and bias; not negative.
     """
 
     noise: float = 0.05
     bias: float = 0.05
     delay: float = 0.005
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("noise", "bias", "delay", "seed"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise InputError(f"a wrist sensor's {name} must be a number >= 0", found=repr(value))
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from fixture_design.arrays import ArrayLike, Rows, Vector
 from fixture_design.assembly import Assembly
+from fixture_design.errors import InputError
 from fixture_design.recognition import Classifier, Log
 from fixture_design.simulation.belief import relative
 from fixture_design.simulation.planar_world import PlanarWorld, add_planar_world
@@ -94,13 +95,17 @@ class Simulation:
         Args:
             shift: where the fixed parts really are.  known: the state at the start.
 
-        Raises: as `add_planar_world` and `recognition_system`.
+        Raises:
+            InputError: a classifier of another assembly, or of what this world's sensor does not measure: wrenches in
+                the part's axes, or with its weight.
+            Besides as `add_planar_world` and `recognition_system`.
         """
         from pydrake.systems.analysis import Simulator  # noqa: PLC0415 - Drake where it is used
         from pydrake.systems.framework import DiagramBuilder  # noqa: PLC0415 - as above
 
         builder = DiagramBuilder()
         world = add_planar_world(builder, assembly, setup, shift)
+        _require_fitting(classifier, assembly)
         sensor = builder.AddSystem(sensor_system(world.wrist, setup.sensor, classifier.signals.length, setup.period))
         recognition = builder.AddSystem(recognition_system(classifier, setup.period, known))
         plant = world.plant
@@ -119,13 +124,19 @@ class Simulation:
         every: int = 2,
         until: Callable[[np.ndarray], bool] = lambda _: False,
     ) -> Run:
-        """Simulates from rest.
+        """Simulates from rest; every run begins anew.
 
         Args:
-            duration: [s].  every: periods between two targets.
+            duration: [s], a period or more.  every: periods between two targets.
             until: ends the run, of the part's pose relative to where the fixed parts really are.
+
+        Raises:
+            InputError: numbers that cannot be.
         """
+        periods = _periods(duration, self.setup.period, every)
         simulator, sensor, recognition = self._parts
+        simulator.reset_context(simulator.get_system().CreateDefaultContext())
+        simulator.Initialize()
         plant, context = self.world.plant, simulator.get_mutable_context()
         of_plant = plant.GetMyMutableContextFromRoot(context)
         start: Any = controller.start  # Drake's stubs want another kind of array
@@ -136,7 +147,7 @@ class Simulation:
         of_sensor, of_recognition = (system.GetMyContextFromRoot(context) for system in (sensor, recognition))
         rows: list[tuple[float, np.ndarray, np.ndarray, np.ndarray, tuple[str, ...], tuple[str, ...]]] = []
         pose, truth = start, ()
-        for k in range(1, round(duration / self.setup.period) + 1):
+        for k in range(1, periods + 1):
             simulator.AdvanceTo(k * self.setup.period)
             # events at the end of a step are left to the next one: the sensor shows its sample of a period ago
             wrench, twist = (sensor.GetOutputPort(name).Eval(of_sensor) for name in ("wrench", "twist"))
@@ -147,7 +158,7 @@ class Simulation:
             truth = true_contacts(self.world, plant.get_contact_results_output_port().Eval(of_plant), pose)
             if until(relative(self.world.shift, pose)):
                 break
-            if k % every == 1:
+            if (k - 1) % every == 0:
                 sample = Sample(k * self.setup.period, pose, state[3:], wrench, possible)
                 target.GetMutableData().set_value(np.concatenate([controller.target(sample), np.zeros(3)]))
         times, wrenches, twists, poses, truths, states = zip(*rows, strict=True)
@@ -158,3 +169,24 @@ def _model(plant: Any) -> Any:
     from pydrake.multibody.tree import default_model_instance  # noqa: PLC0415 - as above
 
     return default_model_instance()
+
+
+def _require_fitting(classifier: Classifier, assembly: Assembly) -> None:
+    if classifier.name != assembly.name:
+        raise InputError(
+            "the classifier is of another assembly", found=repr(classifier.name), expected=repr(assembly.name)
+        )
+    if classifier.signals.axes != "fixed":
+        raise InputError(
+            "the simulated sensor measures in fixed axes, the classifier in the part's", expected='axes="fixed"'
+        )
+    if classifier.signals.weight:
+        raise InputError("the simulated robot carries the part, the classifier knows its weight", expected="mass=0")
+
+
+def _periods(duration: float, period: float, every: int) -> int:
+    if every < 1:
+        raise InputError("a target is set every period, or every few", found=f"every={every}", expected="1 or more")
+    if not (np.isfinite(duration) and round(duration / period) >= 1):
+        raise InputError("a run lasts a period or more", found=f"{duration!r} s", expected=f"at least {period:g} s")
+    return round(duration / period)

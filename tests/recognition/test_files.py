@@ -17,8 +17,18 @@ from fixture_design.assembly import ContactStateGraph
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import json_schema, read_classifier, read_log, write_classifier, write_graph
 from fixture_design.layout import Pose
-from fixture_design.recognition import Classifier, Log, Sensor, c_source, numpy_source, recognize_log
+from fixture_design.recognition import (
+    Classifier,
+    Log,
+    Noise,
+    Sensor,
+    build_classifier,
+    c_source,
+    numpy_source,
+    recognize_log,
+)
 from fixture_design.recognition.tables import Tables, discriminated
+from fixture_design.recognition.widened import Widened, widened_group
 from tests.cli.conftest import command  # noqa: F401 - a fixture
 from tests.recognition.graphs import FOUR, subgraph
 
@@ -54,7 +64,9 @@ def test_a_classifier_file_reads_back(four: Classifier, file: Path) -> None:
         ('"successors": ["N1"', '"successors": ["N77"', "there is no state 'N77'"),
         ('"source": "N1"', '"source": "N77"', "there is no state 'N77'"),
         ('"faces": [[', '"faces": [[0.5, ', "a face vector has 4 numbers"),
-        ('"length": 1.0', '"length": -1.0', "> 0"),
+        ('"length": 1.0', '"length": -1.0', "length"),
+        ('"length": 1.0', '"length": 1e30', "length"),
+        ('"interpolation": "neighbours"', '"interpolation": "nearest"', "'interpolation' is none of|nearest"),
         ("fixture_design/classifier/1", "fixture_design/graph/1", "it is a contact-state graph"),
         ("fixture_design/classifier/1", "fixture_design/classifier/2", "needs a newer"),
     ],
@@ -73,6 +85,46 @@ def test_a_face_that_is_not_there(file: Path) -> None:
     data["transitions"][at]["faces"][0][0] = 99
     file.write_text(json.dumps(data))
     with pytest.raises(FileFormatError, match=rf"transitions\[{at}\].*face 99 of a cone"):
+        read_classifier(file)
+
+
+@pytest.mark.parametrize("factor", [0.0, 1e3, 1e-3, 1.0 + 1e-5])
+def test_rows_that_are_no_unit_vectors(file: Path, factor: float) -> None:
+    data = json.loads(file.read_text())
+    cone = data["states"][1]["cones"][0]
+    cone["faces"][1] = [factor * number for number in cone["faces"][1]]
+    file.write_text(json.dumps(data))
+    with pytest.raises(FileFormatError, match=r"states\[1\].cones\[0\].faces\[1\].*no unit vector"):
+        read_classifier(file)
+
+
+def _without_itself(data: dict) -> None:
+    data["states"][1]["successors"].remove(data["states"][1]["id"])
+
+
+def _to_a_stranger(data: dict) -> None:
+    strangers = {state["id"] for state in data["states"]} - set(data["states"][1]["successors"])
+    data["transitions"].append({"source": data["states"][1]["id"], "target": min(strangers), "faces": []})
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda data: data["transitions"].pop(), "there is no transition from N4 to its successor"),
+        (lambda data: data["transitions"].append(data["transitions"][0]), "there are two transitions from N1 to N1"),
+        (lambda data: data["states"][0]["successors"].append("N1"), "N1 is there twice"),
+        (_without_itself, "not among its own successors"),
+        (_to_a_stranger, "is no successor of"),
+    ],
+)
+def test_transitions_that_do_not_fit(file: Path, change: Callable, words: str) -> None:
+    data = json.loads(file.read_text())
+    for k, state in enumerate(data["states"]):  # names in the message
+        file.write_text(file.read_text().replace(f'"{state["id"]}"', f'"N{k + 1}"'))
+    data = json.loads(file.read_text())
+    change(data)
+    file.write_text(json.dumps(data))
+    with pytest.raises(FileFormatError, match=words):
         read_classifier(file)
 
 
@@ -96,6 +148,8 @@ LOG = "t [s], fx [N], fy, mz [N m], fz\n0, 0, -5, 1, 0\n\n# later\n0.1, 0, -5, 1
         (LOG.replace("fz", "torque"), r"unknown column 'torque'"),
         (LOG.replace("fz", "fy"), r"the column 'fy' is there twice"),
         (LOG.replace("fz", "dx"), r"the log has no column 'dy', 'rz'"),
+        (LOG.replace("\n0.1,", "\n-0.1,"), r"log.csv: row 2: time runs backwards; found -0.1 s after 0 s"),
+        ("t,dx,dy,rz\n0,1,2,3\n", r"the log has no column 'fx', 'fy', 'mz'"),
         (LOG.splitlines()[0], r"a header and no rows"),
         ("", r"the log is empty"),
     ],
@@ -117,6 +171,41 @@ def test_a_log(tmp_path: Path) -> None:
     twists = read_log(path, 2).twists
     assert twists is not None
     np.testing.assert_array_equal(twists, [[2, 3, 1]])
+
+
+def test_a_log_of_displacements_alone(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
+    path = tmp_path / "log.csv"
+    path.write_text("t,dx,dy,rz\n0,0,1,0\n1,0,-1,0\n")
+    log = read_log(path, 2, "displacement")
+    np.testing.assert_array_equal(log.wrenches, np.zeros((2, 3)))
+    np.testing.assert_array_equal(log.twists, [[0, 1, 0], [0, -1, 0]])
+    made = build_classifier(subgraph(graph, FOUR), measure="displacement", discriminants=False)
+    write_classifier(made, tmp_path / "c.json")
+    rows = json.loads(command("recognize", tmp_path / "c.json", path, "--json").out)["rows"]
+    on_top = next(state.id for state in made.states if state.contacts == ("apex 3 - facet 5",))
+    assert on_top in rows[0]["states"]
+    assert on_top not in rows[1]["states"]
+    path.write_text("t,fx,fy,mz\n0,1,2,3\n")
+    assert "has no column 'dx', 'dy', 'rz'" in command("recognize", tmp_path / "c.json", path).err
+
+
+@pytest.mark.parametrize("argument", ["abc", [[1.0], [2.0, 3.0]], ["x", 1.0, 2.0]])
+def test_words_are_no_numbers(four: Classifier, argument: object) -> None:
+    for call in (
+        lambda: four.recognize(argument),  # type: ignore[arg-type]
+        lambda: Log.of(argument, WRENCHES),  # type: ignore[arg-type]
+        lambda: Log.of([0.0], argument),  # type: ignore[arg-type]
+        lambda: Sensor.of(2, None, argument),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(InputError, match="must be numbers"):
+            call()
+
+
+def test_a_sensor_in_space_for_a_planar_log(four: Classifier) -> None:
+    with pytest.raises(InputError, match="a sensor of 6 numbers, a log of 3"):
+        recognize_log(four, Log.of([0.0], WRENCHES[:1]), Sensor.of(3))
+    with pytest.raises(InputError, match="planar or spatial"):
+        Sensor.of(4)
 
 
 def test_arrays_as_a_log(four: Classifier) -> None:
@@ -164,6 +253,14 @@ def test_exported_code_says_the_same(four: Classifier, four_jointly: Classifier,
             if compiled is not None:
                 assert compiled(classifier, source, wrench, twist) == here
     assert len(seen) > 5
+    for bad in ([np.nan, 0.0, 1.0], [0.0, np.inf, 0.0]):
+        wrench, twist = np.array(bad), np.ones(3) if joint else None
+        for source in classifier.ids:
+            assert functions["next_states"](source, wrench, twist) == []
+            assert compiled is None or compiled(classifier, source, wrench, twist) == ()
+            if joint:
+                assert functions["next_states"](source, np.ones(3), wrench) == []
+                assert compiled is None or compiled(classifier, source, np.ones(3), wrench) == ()
     if compiled is None:
         pytest.skip("there is no C compiler `cc`: only the numpy function was compared")
 
@@ -187,15 +284,34 @@ def _compiled(source: str, folder: Path) -> Callable | None:
     return answer
 
 
-def test_discriminants_tell_what_the_sets_tell(four: Classifier) -> None:
-    """Among forces that some successor may have made, up to the widening, which both use in their own way."""
-    exact = four.with_noise(type(four.noise)())
-    tables = Tables.of(exact)
+@pytest.mark.parametrize("noise", [Noise(), Noise(0.02), Noise(0.1)])
+def test_discriminants_tell_what_the_sets_tell(four: Classifier, noise: Noise) -> None:
+    """Among forces that some successor may have made, all sets widened."""
+    noisy = four.with_noise(noise)
+    tables = Tables.of(noisy)
+    told = 0
     for wrench in WRENCHES:
-        for source in exact.ids:
-            answer = exact.recognize(wrench, previous=source)
+        for source in noisy.ids:
+            answer = noisy.recognize(wrench, previous=source)
             if answer.expected:
-                assert set(answer.states) <= set(discriminated(exact, tables, source, wrench))
+                told += len(answer.states)
+                assert answer.states == discriminated(noisy, tables, source, wrench)
+    assert told > 100
+
+
+@pytest.mark.parametrize(("group", "bounds", "wanted"), [
+    ((0,), (1e-3, 1e-3), (0, 1)),  # face 1 is implied by the other's, but only sqrt(2) as far out
+    ((0,), (1e-3, 5e-4), (0,)),
+    ((0,), (0.0, 0.0), (0,)),
+])  # fmt: skip
+def test_a_face_is_left_out_only_if_the_bounds_allow_it(
+    group: tuple[int, ...], bounds: tuple[float, float], wanted: tuple[int, ...]
+) -> None:
+    """{x <= 0, y <= 0} against {x <= y <= -x}, whose faces (1, 1) and (1, -1) imply x <= 0 by halves times sqrt(2)."""
+    ours, theirs = (np.array(rows, dtype=float) for rows in ([[0, 1], [1, 0]], [[1, 1], [1, -1]]))
+    cone = Widened(ours, np.full(2, bounds[0]))
+    other = Widened(theirs / np.sqrt(2), np.full(2, bounds[1]))
+    assert widened_group(cone, group, [other]) == wanted
 
 
 def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
@@ -223,9 +339,22 @@ def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -
     bad = command("recognize", tmp_path / "c.json", log)
     assert bad.code == 2
     assert "row 1, column fy" in bad.err
-    assert command("recognize", tmp_path / "c.json", log, "--sensor", "1,2").code == 2
+    log.write_text("t,fx,fy,mz\n0,1,100,500\n")
     assert command("recognize", tmp_path / "graph.json", log).code == 2
     assert command("classifier", tmp_path / "c.json").code == 2
-    assert command("classifier", tmp_path / "graph.json", "--friction", "-1").code == 2
+    assert "set --floor" in made.err
+    for option, value in (("--friction", "-1"), ("--noise", "nan"), ("--floor", "-1"), ("--seed", "-1")):
+        bad = command("classifier", tmp_path / "graph.json", option, value)
+        assert bad.code == 2
+        assert option in bad.err
+        assert "graph.json" not in bad.err
+    bad = command("recognize", tmp_path / "c.json", log, "--start", "N99")
+    assert bad.code == 2
+    assert "--start: no state is called 'N99'" in bad.err
+    for option in ("--sensor", "--tare"):
+        bad = command("recognize", tmp_path / "c.json", log, option, "1,2")
+        assert bad.code == 2
+        assert f"{option} takes 3 numbers" in bad.err
+        assert "log.csv" not in bad.err
     shown = command("classifier", tmp_path / "graph.json", "--json", "--interpolation", "hull")
     assert json.loads(shown.out)["schema"] == "fixture_design/classifier/1"

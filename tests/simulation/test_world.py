@@ -140,3 +140,45 @@ def test_rectangles_and_rounded_corners() -> None:
         assert abs(along[0] * away[1] - along[1] * away[0]) == pytest.approx(0.1)
     with pytest.raises(UnsupportedError, match="3 vertices"):
         Rectangle.of(turned[:3])
+
+
+def test_every_run_begins_anew_and_moves_the_target_when_told(
+    peg: ContactStateGraph, peg_classifier: Classifier
+) -> None:
+    @dataclass
+    class Counted(Pushed):
+        asked: int = 0
+
+        def target(self, sample) -> np.ndarray:
+            self.asked += 1
+            return self.place
+
+    goal = np.array([-0.025, -0.005, 0.0])
+    simulation = Simulation.of(peg.assembly, peg_classifier, Setup(), np.zeros(3), "N1")
+    found = []
+    for every, asked in ((1, 10), (1, 10), (2, 5), (3, 4)):
+        controller = Counted(goal + np.array([0.0, 0.007, 0.0]), goal)
+        found.append(simulation.run(controller, 0.1, every))
+        assert controller.asked == asked
+    np.testing.assert_array_equal(found[0].log.wrenches, found[1].log.wrenches)
+    np.testing.assert_array_equal(found[0].poses, found[1].poses)
+    assert found[0].possible == found[1].possible
+    for duration, every, words in ((0.0, 1, "a period or more"), (-1.0, 1, "a period or more"), (1.0, 0, "every=0")):
+        with pytest.raises(InputError, match=words):
+            simulation.run(Pushed(goal, goal), duration, every)
+
+
+@pytest.mark.parametrize("name", ["noise", "bias", "delay", "seed"])
+def test_a_sensor_s_errors_are_not_negative(name: str) -> None:
+    with pytest.raises(InputError, match=f"wrist sensor's {name}"):
+        WristSensor(**{name: -1 if name == "seed" else -1.0})
+
+
+def test_classifiers_that_do_not_fit_the_world(peg: ContactStateGraph, peg_classifier: Classifier) -> None:
+    signals = peg_classifier.signals
+    for wrong, words in (
+        (replace(peg_classifier, name="other"), "another assembly; found 'other'"),
+        (replace(peg_classifier, signals=replace(signals, axes="part")), "fixed axes"),
+    ):
+        with pytest.raises(InputError, match=words):
+            Simulation.of(peg.assembly, wrong, Setup(), np.zeros(3))
