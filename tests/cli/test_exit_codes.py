@@ -72,7 +72,7 @@ def test_order_of_severity() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["verify"], "Missing argument 'LAYOUT...'"),
+        (["verify"], "Missing argument 'LAYOUT'"),
         (["verify", "--jsn", "x.yaml"], "--jsn"),
         (["verfy", "x.yaml"], "No such command 'verfy'"),
         (["--frobnicate"], "--frobnicate"),
