@@ -25,7 +25,7 @@ from fixture_design.design.preloads import duties_of
 from fixture_design.design.problem import Problem
 from fixture_design.design.raising import fewest_raised
 from fixture_design.design.result import ChangeBound, DesignResult
-from fixture_design.design.shortfall import failing
+from fixture_design.design.shortfall import failing, left_out_in_words, not_yet_no
 from fixture_design.design.start import elements_of
 from fixture_design.design.task import CandidateRules, Limits, Task
 from fixture_design.design.touching import candidates_of
@@ -67,17 +67,21 @@ def repair(
     proven = True
     everything, _ = candidates_of(task, ways, ways.spots(task.candidates, seed))
     everything, _ = fitting(task, ways, everything)
+    left_out = 0
     for some in by_certainty(everything):
+        left_out = len(everything) - len(some)
         problem = _problem(task, ways, some, cancelled)
         found = fewest_over_ways(task, ways, problem, seed, progress)
         if np.isfinite(found.found):
             # what certainly does not hold does not hold without a change
             least = max(found.bound, int(before is not None and before.satisfied is Answer.NO))
-            return _first_that_holds(asked, ways, problem, replace(found, bound=least))
+            result = _first_that_holds(asked, ways, problem, replace(found, bound=least))
+            return replace(result, notes=(*result.notes, left_out_in_words(left_out))) if left_out else result
         proven &= found.complete and not some.errors.any()
     what = "no changes among these candidates" if proven else "no changes were found that"
     reason = f"{what} make it locate, let out and close what it has to"
-    return DesignResult(Answer.NO if proven else Answer.UNDECIDED, None, verdict=before, reason=reason)
+    result = DesignResult(Answer.NO if proven else Answer.UNDECIDED, None, verdict=before, reason=reason)
+    return not_yet_no(result, left_out) if left_out else result
 
 
 def _asked_for(layout: Layout, ways: Ways) -> Layout:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fixture_design.cones.kernel import closure_test, closure_tests
-from fixture_design.contacts import Role
+from fixture_design.contacts import Contact, Provenance, Role
 from fixture_design.design import DesignResult, repair
 from fixture_design.layout import Answer, Element, KeyFeature, Layout, Part, Pose
 from fixture_design.verification import check, verify
@@ -175,3 +177,47 @@ def test_a_layout_that_is_not_exact_enough_gets_one_locator_moved() -> None:
     result = repair(given)
     confirm(result, list(elements))
     assert [(step.action, step.element) for step in result.steps] in ([("moved", "L1")], [("moved", "L2")])
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertain(Spots):
+    """Spots whose normals on the side y = 1 are known to 0.05 rad."""
+
+    @property
+    def provenance(self) -> tuple[Provenance, ...]:
+        return tuple(Provenance("fitted", 0.05) if normal[1] > 0.5 else Provenance() for normal in self.normals)
+
+
+class OnUncertain(Fake):
+    def contacts(self, layout: Layout) -> tuple[Contact, ...]:
+        nearest = [np.argmin(np.linalg.norm(self.given.points - c.point, axis=1)) for c in super().contacts(layout)]
+        known = self.given.provenance
+        return tuple(
+            replace(contact, provenance=known[int(index)])
+            for contact, index in zip(super().contacts(layout), nearest, strict=True)
+        )
+
+
+def test_candidates_that_were_not_looked_at_leave_it_undecided() -> None:
+    square = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 5)
+    spots = Uncertain(square.points, square.normals, square.features)
+    ways = OnUncertain(spots)
+    given = layout(spots, [], {"locators": ("deterministic",), "all": ("form_closure",)})
+    holding = {0: "locator", 4: "locator", 17: "locator", 8: "clamp", 10: "clamp", 14: "clamp"}
+    elements = tuple(Element(f"E{i}", role, spots.points[i]) for i, role in holding.items())  # type: ignore[arg-type]
+    assert ways.verify(replace(given, elements=elements)).satisfied is Answer.YES
+    result = repair(given, ways)
+    assert result.satisfied is Answer.UNDECIDED
+    assert result.reason is not None
+    assert "5 more, whose normals are known less well, were not looked at" in result.reason
+
+
+@pytest.mark.parametrize(("status", "answer"), [(1, Answer.UNDECIDED), (2, Answer.NO), (4, Answer.UNDECIDED)])
+def test_a_solver_that_gives_up_proves_nothing(monkeypatch: pytest.MonkeyPatch, status: int, answer: Answer) -> None:
+    spots = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 3)
+    places = {"L1": (0.5, 0.0), "L2": (0.5, 1.0)}  # fixed on opposite sides: no motion leaves both
+    nearest = {name: np.argmin(np.linalg.norm(spots.points - at, axis=1)) for name, at in places.items()}
+    elements = [Element(name, "locator", spots.points[place], fixed=True) for name, place in nearest.items()]
+    gave_up = SimpleNamespace(x=None, status=status, mip_dual_bound=None)
+    monkeypatch.setattr("scipy.optimize.milp", lambda *_, **__: gave_up)
+    assert repair(layout(spots, elements, OPEN), Fake(spots)).satisfied is answer
