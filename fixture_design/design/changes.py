@@ -34,6 +34,8 @@ _MOST_CUTS = 200
 _MOST_IN_VAIN = 50
 #: Between layouts with as many changes the one in which less leaves and comes is taken: what one of these costs [-].
 _LITTLE = 1e-4
+#: The status by which the solver says that nothing fulfils the program; others (limits, trouble) prove nothing.
+_INFEASIBLE = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +91,11 @@ class _Program:
     cuts: list[Mask] = field(default_factory=list)
     conflicts: list[tuple[int, ...]] = field(default_factory=list)
 
-    def solved(self) -> tuple[Mask, int] | None:
-        """The cheapest choice, shape (o,), and a lower bound of its changes; None where there is none."""
+    def solved(self) -> tuple[Mask | None, float]:
+        """The cheapest choice, shape (o,), and a lower bound of its changes: inf where there certainly is no choice.
+
+        Without a choice and with a bound of 0 the solver gave up.
+        """
         from scipy.optimize import Bounds, LinearConstraint, milp  # noqa: PLC0415 - slow to import
 
         kept = self._unlike()
@@ -131,11 +136,11 @@ class _Program:
         whole = np.ones(count + 2)
         found = milp(costs, constraints=within, integrality=whole, bounds=limits, options={"mip_rel_gap": 0.0})
         if found.x is None:
-            return None
+            return None, np.inf if found.status == _INFEASIBLE else 0.0
         chosen = np.zeros(len(options.candidates), dtype=bool)
         chosen[kept[found.x[:count] > 1 / 2]] = True
         # as many come as there are changes, at most, so that these cost no more than (1 + little) times their number
-        return chosen, max(0, int(np.ceil(float(found.mip_dual_bound) / (1 + _LITTLE) - DEFAULT.near)))
+        return chosen, max(0.0, float(np.ceil(float(found.mip_dual_bound) / (1 + _LITTLE) - DEFAULT.near)))
 
     def _unlike(self) -> Indices:
         """What is there, what is in conflicts, and of all others one for each role and set of cuts."""
@@ -164,12 +169,11 @@ def fewest_changes(
     program, bound = _Program(problem, options, leaving), 0
     in_vain = 0
     while True:
-        found = program.solved()
-        if found is None:
-            return Changes(None, None, len(options.candidates) + 1)
-        chosen, least = found
+        chosen, least = program.solved()
+        if chosen is None:
+            return Changes(None, None, len(options.candidates) + 1 if least > 0 else bound, complete=least > 0)
         in_vain = 0 if least > bound else in_vain + 1
-        bound = max(bound, least)
+        bound = max(bound, int(least))
         too_many = len(program.cuts) >= _MOST_CUTS or in_vain >= _MOST_IN_VAIN
         if bound >= enough or too_many or cancelled():
             return Changes(None, None, bound, complete=bound >= enough)

@@ -11,6 +11,7 @@ from fixture_design.design.attempt import Asked, attempt, better_of, leaves_stra
 from fixture_design.design.fitting import fitting
 from fixture_design.design.plans import Plan, by_certainty, plans
 from fixture_design.design.result import DesignResult
+from fixture_design.design.shortfall import left_out_in_words, not_yet_no
 from fixture_design.design.task import Task
 from fixture_design.design.touching import candidates_of
 from fixture_design.design.ways import Progress, Ways, ways_of
@@ -54,9 +55,8 @@ def design(
                     break  # a motion that no candidate stops is free however the part comes out
                 found = attempt(asked, some, plan, keep_all=keep_all, slides=slides)
                 if left_out := len(candidates) - len(some):
-                    note = f"{left_out} candidates on round or uncertain surfaces were left out"
-                    found = replace(found, notes=(*found.notes, note))
-                    found = _not_yet_no(found, left_out)
+                    found = replace(found, notes=(*found.notes, left_out_in_words(left_out)))
+                    found = not_yet_no(found, left_out)
                 found = replace(found, notes=(*found.notes, *left_out_notes))
                 best = found if best is None else better_of(best, found)
                 if best.satisfied is Answer.YES or cancelled():
@@ -78,17 +78,6 @@ def _instead(second: DesignResult, free: Vector, certain: bool) -> DesignResult:
         "normals that are not known (`part: {faceted: true}` says that every facet is meant as it is)"
     )
     return replace(second, satisfied=Answer.UNDECIDED, free=free, reason=reason)
-
-
-def _not_yet_no(found: DesignResult, left_out: int) -> DesignResult:
-    """A no that some candidates had no part in is none."""
-    if found.satisfied is not Answer.NO:
-        return found
-    reason = (
-        f"{found.reason}; {left_out} more, whose normals are known less well, were not looked at "
-        "(`part: {faceted: true}` says that every facet is meant as it is)"
-    )
-    return replace(found, satisfied=Answer.UNDECIDED, reason=reason)
 
 
 def _turns(task: Task, plan: Plan) -> list[tuple[bool, bool]]:

@@ -8,24 +8,22 @@ found step by step. Among changes that are as few, the places are those that are
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from itertools import chain
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from fixture_design.arrays import Indices
 from fixture_design.design.candidates import Candidates
-from fixture_design.design.changed_layout import changed, index_of, raised
-from fixture_design.design.changing import Fewest, best_places, fewest_over_ways, more_exact
+from fixture_design.design.changing import Fewest, fewest_over_ways
 from fixture_design.design.features import features_of
 from fixture_design.design.fitting import fitting, standing
-from fixture_design.design.found import Found
+from fixture_design.design.mended import NamedLeavesError, first_that_holds
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty
 from fixture_design.design.preloads import duties_of
 from fixture_design.design.problem import Problem
-from fixture_design.design.raising import fewest_raised
 from fixture_design.design.result import ChangeBound, DesignResult
-from fixture_design.design.shortfall import failing
+from fixture_design.design.shortfall import left_out_in_words, not_yet_no
+from fixture_design.design.staged import as_seen, aside, unlike_asked, words
 from fixture_design.design.start import elements_of
 from fixture_design.design.task import CandidateRules, Limits, Task
 from fixture_design.design.touching import candidates_of
@@ -62,22 +60,72 @@ def repair(
     before = ways.verify(asked) if (asked.elements or asked.bodies or asked.contacts) else None
     if before is not None and before.satisfied is Answer.YES:
         return DesignResult(Answer.YES, asked, before, changes=ChangeBound(0, 0, complete=True))
-    progress("candidates", 0.0)
-    task = _task(asked, rules or CandidateRules())
-    proven = True
-    everything, _ = candidates_of(task, ways, ways.spots(task.candidates, seed))
-    everything, _ = fitting(task, ways, everything)
-    for some in by_certainty(everything):
-        problem = _problem(task, ways, some, cancelled)
-        found = fewest_over_ways(task, ways, problem, seed, progress)
-        if np.isfinite(found.found):
-            # what certainly does not hold does not hold without a change
-            least = max(found.bound, int(before is not None and before.satisfied is Answer.NO))
-            return _first_that_holds(asked, ways, problem, replace(found, bound=least))
-        proven &= found.complete and not some.errors.any()
-    what = "no changes among these candidates" if proven else "no changes were found that"
-    reason = f"{what} make it locate, let out and close what it has to"
-    return DesignResult(Answer.NO if proven else Answer.UNDECIDED, None, verdict=before, reason=reason)
+    mending = _Mending(asked, before, ways, seed, rules or CandidateRules(), progress, cancelled)
+    others = aside(asked)
+    result = mending.result(others)
+    if others and result.satisfied is not Answer.YES and not cancelled():  # they may be what has to change
+        again = mending.result(frozenset())
+        return again if again.satisfied is Answer.YES else result
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Mending:
+    """A layout that is to be repaired, and its verdict as it is, if it touches the part at all."""
+
+    asked: Layout
+    before: Verdict | None
+    ways: Ways
+    seed: int
+    rules: CandidateRules
+    progress: Progress
+    cancelled: Callable[[], bool]
+
+    @cached_property
+    def unlike(self) -> str | None:
+        """Where what is looked for is not quite what is asked."""
+        return unlike_asked(self.asked)
+
+    def result(self, left_aside: frozenset[str], staying: frozenset[str] = frozenset()) -> DesignResult:
+        """The fewest changes that leave some locators aside and some elements where they are; no named one leaves."""
+        try:
+            return self._among_candidates(_task(as_seen(self.asked, left_aside, staying), self.rules))
+        except NamedLeavesError as error:
+            return self.result(left_aside, staying | error.names)
+
+    def _among_candidates(self, task: Task) -> DesignResult:
+        self.progress("candidates", 0.0)
+        proven, left_out = self.unlike is None, 0
+        everything, _ = candidates_of(task, self.ways, self.ways.spots(task.candidates, self.seed))
+        everything, _ = fitting(task, self.ways, everything)
+        for some in by_certainty(everything):
+            left_out = len(everything) - len(some)
+            problem = _problem(task, self.ways, some, self.cancelled)
+            found = fewest_over_ways(task, self.ways, problem, self.seed, self.progress)
+            if np.isfinite(found.found):
+                result = first_that_holds(self.asked, self.ways, problem, self._with_bound(found))
+                return self._with_notes(result, left_out)
+            proven &= found.complete and not some.errors.any()
+        what = "no changes among these candidates" if proven else "no changes were found that"
+        reason = f"{what} make it locate, let out and close what it has to"
+        result = DesignResult(Answer.NO if proven else Answer.UNDECIDED, None, verdict=self.before, reason=reason)
+        return self._with_notes(not_yet_no(result, left_out) if left_out else result, 0)
+
+    def _with_bound(self, found: Fewest) -> Fewest:
+        """What certainly does not hold does not hold without a change; that may be all that is known."""
+        least = int(self.before is not None and self.before.satisfied is Answer.NO)
+        if self.unlike is not None:
+            return replace(found, bound=least, complete=False)
+        return replace(found, bound=max(found.bound, least))
+
+    def _with_notes(self, result: DesignResult, left_out: int) -> DesignResult:
+        if left_out:
+            result = replace(result, notes=(*result.notes, left_out_in_words(left_out)))
+        if self.unlike is None:
+            return result
+        if result.satisfied is not Answer.YES:
+            return replace(result, reason=f"{result.reason}; {self.unlike}")
+        return replace(result, notes=(*result.notes, f"that these are the fewest changes has no proof: {self.unlike}"))
 
 
 def _asked_for(layout: Layout, ways: Ways) -> Layout:
@@ -90,19 +138,10 @@ def _asked_for(layout: Layout, ways: Ways) -> Layout:
     )
 
 
-def _words(layout: Layout) -> tuple[set[Requirement], set[Requirement]]:
-    """What is required of locators alone, and of groups with other contacts."""
-    names = {"locator", *(element.name for element in layout.elements if element.role == "locator")}
-    of_locators, of_others = set(layout.require.get("locators", ())), set(layout.require.get("all", ()))
-    for stage in layout.stages:
-        (of_locators if set(stage.active) <= names else of_others).update(stage.require)
-    return of_locators, of_others
-
-
 def _task(layout: Layout, rules: CandidateRules) -> Task:
     """The layout as a task that asks for all that any of its stages requires."""
     assert layout.part is not None
-    of_locators, of_others = _words(layout)
+    of_locators, of_others = words(layout)
     require = {"locators": tuple(sorted(of_locators)), "all": tuple(sorted(of_others))}
     return Task(
         layout.name, layout.part, layout.space, rules, layout, require, Limits(), gravity=layout.gravity,
@@ -132,52 +171,3 @@ def _problem(task: Task, ways: Ways, candidates: Candidates, cancelled: Callable
         duties=duties_of(task, Plan(task.require, task.friction), ways, candidates),
         standing=standing(task, candidates), cancelled=cancelled,
     )  # fmt: skip
-
-
-def _first_that_holds(asked: Layout, ways: Ways, problem: Problem, fewest: Fewest) -> DesignResult:
-    """What the fewest changes lead to, at their best places or where they were found; where that is not exact enough,
-    more and more locators are moved besides.
-    """
-    locators, clamps = best_places(problem, fewest.locators, fewest.clamps, fewest.pool)
-    first = _drawn_up(asked, ways, problem, (locators, clamps), fewest)
-    if first.satisfied is Answer.YES:
-        return first
-    others = [(fewest.locators, fewest.clamps)]
-    others = [one for one in others if not all(map(np.array_equal, one, (locators, clamps)))]
-    exacter = more_exact(problem, locators, clamps, fewest.pool) if _inexact(first.verdict) else ()
-    for one in chain(others, ((exact, clamps) for exact in exacter)):
-        if problem.cancelled():
-            break
-        result = _drawn_up(asked, ways, problem, one, fewest)
-        if result.satisfied is Answer.YES:
-            return result
-    return first
-
-
-def _inexact(verdict: Verdict | None) -> bool:
-    return verdict is not None and any(
-        r.require == "accurate" and r.answer is not Answer.YES for r in verdict.requirements
-    )
-
-
-def _drawn_up(
-    asked: Layout, ways: Ways, problem: Problem, best: tuple[Indices, Indices], fewest: Fewest
-) -> DesignResult:
-    """The changed layout with its verdict and the record of changes; preloads chosen where forces ask for it."""
-    locators, clamps = best
-    after, steps = changed(asked, problem, locators, clamps)
-    verdict = ways.verify(after)
-    if verdict.satisfied is not Answer.YES and problem.pushing is not None:
-        names = {index_of(problem, e, clamps): e.name for e in after.elements if e.role == "clamp"}
-        found = Found(locators, np.array([*names, *problem.clamps], dtype=np.int64), None, 0.0, 0.0)
-        coming = [step.element for step in steps if step.action in ("added", "moved")]
-        pushed = fewest_raised(ways, problem, found, after, names, coming)
-        if pushed is not None:
-            (after, verdict), steps = pushed, [*steps, *raised(asked, pushed[0])]
-    satisfied = Answer.YES if verdict.satisfied is None else verdict.satisfied
-    if satisfied is not Answer.YES:  # no number of changes is known to do
-        reason = f"what was found does not verify: {failing(verdict)}"
-        return DesignResult(Answer.UNDECIDED, after, verdict, tuple(steps), reason=reason)
-    return DesignResult(
-        satisfied, after, verdict, tuple(steps), changes=ChangeBound(len(steps), fewest.bound, fewest.complete)
-    )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fixture_design.design.found import Found, Outcome
@@ -103,3 +105,19 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     if problem.cancelled():
         reason = "the search was stopped before it found a layout"
     return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)
+
+
+def left_out_in_words(count: int) -> str:
+    """A note on candidates that were not looked at."""
+    return f"{count} candidates on round or uncertain surfaces were left out"
+
+
+def not_yet_no(found: DesignResult, left_out: int) -> DesignResult:
+    """A no that some candidates had no part in is none."""
+    if found.satisfied is not Answer.NO:
+        return found
+    reason = (
+        f"{found.reason}; {left_out} more, whose normals are known less well, were not looked at "
+        "(`part: {faceted: true}` says that every facet is meant as it is)"
+    )
+    return replace(found, satisfied=Answer.UNDECIDED, reason=reason)

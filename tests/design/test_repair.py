@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fixture_design.cones.kernel import closure_test, closure_tests
-from fixture_design.contacts import Role
+from fixture_design.contacts import Contact, Provenance, Role
 from fixture_design.design import DesignResult, repair
-from fixture_design.layout import Answer, Element, KeyFeature, Layout, Part, Pose
+from fixture_design.layout import Answer, Element, KeyFeature, Layout, Part, Pose, Stage
 from fixture_design.verification import check, verify
 from tests.design.fakes import Fake, Spots, box, candidates, polygon
 
@@ -160,6 +162,28 @@ def test_a_locator_on_the_wrong_side_is_moved() -> None:
     assert [step.action for step in result.steps] == ["moved"]
 
 
+@pytest.mark.parametrize(
+    ("extra", "why"),
+    [
+        ((0.5, 1.0), ["bound"]),  # across from L1: no motion leaves both
+        ((1.0, 0.0), []),  # harmless, it stays
+    ],
+)
+def test_a_locator_is_removed_for_the_reason_that_is_told(extra: tuple[float, float], why: list[str]) -> None:
+    spots = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 3)
+    places = {"L1": (0.5, 0.0), "L2": (1.5, 0.0), "L3": (0.0, 0.5), "L4": extra}
+    nearest = {name: np.argmin(np.linalg.norm(spots.points - at, axis=1)) for name, at in places.items()}
+    elements = [Element(name, "locator", spots.points[place], fixed=name != "L4") for name, place in nearest.items()]
+    elements += [Element(f"K{i}", "clamp", at) for i, at in enumerate(spots.points) if at[0] == 2 or at[1] == 1]
+    elements = [e for e in elements if e.role == "locator" or not np.array_equal(e.at, elements[3].at)]
+    result = repair(layout(spots, elements, OPEN), Fake(spots))
+    confirm(result, elements)
+    removed = [step for step in result.steps if step.action == "removed"]
+    assert [step.why for step in removed] == why
+    for step in removed:
+        assert {"L1", "L4"} <= set(step.circuit) <= {"L1", "L2", "L3", "L4"}
+
+
 def test_a_layout_that_is_not_exact_enough_gets_one_locator_moved() -> None:
     corners = np.array([[0.0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]])
     part = Part("plate", "polygon", None, corners, 1.0, Pose.identity(2))
@@ -175,3 +199,105 @@ def test_a_layout_that_is_not_exact_enough_gets_one_locator_moved() -> None:
     result = repair(given)
     confirm(result, list(elements))
     assert [(step.action, step.element) for step in result.steps] in ([("moved", "L1")], [("moved", "L2")])
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertain(Spots):
+    """Spots whose normals on the side y = 1 are known to 0.05 rad."""
+
+    @property
+    def provenance(self) -> tuple[Provenance, ...]:
+        return tuple(Provenance("fitted", 0.05) if normal[1] > 0.5 else Provenance() for normal in self.normals)
+
+
+class OnUncertain(Fake):
+    def contacts(self, layout: Layout) -> tuple[Contact, ...]:
+        nearest = [np.argmin(np.linalg.norm(self.given.points - c.point, axis=1)) for c in super().contacts(layout)]
+        known = self.given.provenance
+        return tuple(
+            replace(contact, provenance=known[int(index)])
+            for contact, index in zip(super().contacts(layout), nearest, strict=True)
+        )
+
+
+def test_candidates_that_were_not_looked_at_leave_it_undecided() -> None:
+    square = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 5)
+    spots = Uncertain(square.points, square.normals, square.features)
+    ways = OnUncertain(spots)
+    given = layout(spots, [], {"locators": ("deterministic",), "all": ("form_closure",)})
+    holding = {0: "locator", 4: "locator", 17: "locator", 8: "clamp", 10: "clamp", 14: "clamp"}
+    elements = tuple(Element(f"E{i}", role, spots.points[i]) for i, role in holding.items())  # type: ignore[arg-type]
+    assert ways.verify(replace(given, elements=elements)).satisfied is Answer.YES
+    result = repair(given, ways)
+    assert result.satisfied is Answer.UNDECIDED
+    assert result.reason is not None
+    assert "5 more, whose normals are known less well, were not looked at" in result.reason
+
+
+@pytest.mark.parametrize(("status", "answer"), [(1, Answer.UNDECIDED), (2, Answer.NO), (4, Answer.UNDECIDED)])
+def test_a_solver_that_gives_up_proves_nothing(monkeypatch: pytest.MonkeyPatch, status: int, answer: Answer) -> None:
+    spots = polygon(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), 3)
+    places = {"L1": (0.5, 0.0), "L2": (0.5, 1.0)}  # fixed on opposite sides: no motion leaves both
+    nearest = {name: np.argmin(np.linalg.norm(spots.points - at, axis=1)) for name, at in places.items()}
+    elements = [Element(name, "locator", spots.points[place], fixed=True) for name, place in nearest.items()]
+    gave_up = SimpleNamespace(x=None, status=status, mip_dual_bound=None)
+    monkeypatch.setattr("scipy.optimize.milp", lambda *_, **__: gave_up)
+    assert repair(layout(spots, elements, OPEN), Fake(spots)).satisfied is answer
+
+
+RECTANGLE = np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])
+HELD = Stage("held", ("locator", "clamp"), require=("form_closure",))
+
+
+def staged(places: dict[str, tuple[float, float]], active: tuple[str, ...], fixed: str = "") -> Layout:
+    """A rectangle on locators, clamped, with a stage that names some of them."""
+    part = Part("plate", "polygon", None, RECTANGLE, 1.0, Pose.identity(2))
+    elements = tuple(
+        Element(name, "locator" if name[0] == "L" else "clamp", np.array(at), fixed=name in fixed.split())
+        for name, at in places.items()
+    )
+    seated = Stage("seated", active, require=("deterministic", "strongly_accessible"))
+    return Layout("staged", "planar", part, elements=elements, stages=(seated, HELD))
+
+
+THREE = {"L1": (0.3, 0.0), "L2": (1.7, 0.0), "L3": (0.0, 0.5)}
+
+
+def test_what_a_stage_asks_of_some_locators_is_not_asked_of_all() -> None:
+    given = staged({**THREE, "L4": (1.2, 1.0)}, ("L1", "L2", "L3"))  # L4 is across, and closes only
+    assert verify(given).satisfied is Answer.NO
+    result = repair(given)
+    confirm(result, list(given.elements))
+    assert result.layout is not None
+    assert verify(result.layout).satisfied is Answer.YES
+    assert [step.action for step in result.steps] == ["added"]
+    assert result.changes is not None
+    assert not result.changes.complete
+    assert any("stage seated" in note for note in result.notes)
+
+
+def test_an_element_that_a_stage_names_moves_and_does_not_leave() -> None:
+    clamps = {"K1": (1.2, 1.0), "K2": (2.0, 0.5)}
+    given = staged({**THREE, "L4": (1.0, 1.0), **clamps}, ("L1", "L2", "L3", "L4"))  # L4 may not be there
+    assert verify(given).satisfied is Answer.NO
+    result = repair(given)
+    assert result.layout is not None
+    confirm(result, list(given.elements))
+    assert {step.action for step in result.steps} == {"moved"}
+    assert {"L1", "L2", "L3", "L4"} <= {element.name for element in result.layout.elements}
+
+
+def test_no_proof_where_a_stage_asks_something_of_named_locators() -> None:
+    given = staged({**THREE, "L4": (0.3, 1.0)}, ("L1", "L2", "L3", "L4"), fixed="L1 L2 L3 L4")
+    result = repair(given)
+    assert result.satisfied is Answer.UNDECIDED
+    assert result.reason is not None
+    assert "stage seated is one of some contacts only (L1, L2, L3, L4)" in result.reason
+
+
+def test_stages_of_whole_roles_are_proven_like_groups() -> None:
+    result = repair(staged({**THREE, "L4": (1.2, 1.0)}, ("locator",)))
+    assert result.satisfied is Answer.YES
+    assert result.changes is not None
+    assert result.changes.proven
+    assert result.notes == ()
