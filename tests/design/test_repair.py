@@ -301,3 +301,20 @@ def test_stages_of_whole_roles_are_proven_like_groups() -> None:
     assert result.changes is not None
     assert result.changes.proven
     assert result.notes == ()
+
+
+def test_what_is_fixed_costs_changes_and_no_fewer_do() -> None:
+    spots = polygon(RECTANGLE, 3)
+    places = {"F1": (0.5, 1.0), "F2": (1.5, 1.0), "L1": (0.5, 0.0), "L2": (1.0, 0.0), "L3": (0.0, 0.5)}
+    # without F1 some motion leaves all locators; with both of them L1 and L2 have to go
+    elements = [Element(name, "locator", np.array(at), fixed=name[0] == "F") for name, at in places.items()]
+    elements += [Element("K1", "clamp", np.array([1.5, 0.0])), Element("K2", "clamp", np.array([2.0, 0.75]))]
+    counts = []
+    for some in (elements, [replace(element, fixed=False) for element in elements]):
+        result = repair(layout(spots, some, OPEN), Fake(spots))
+        confirm(result, some)
+        assert result.changes is not None
+        assert result.changes.proven
+        counts.append(result.changes.found)
+        assert result.changes.found == fewest(spots, some, 2, straight=False)
+    assert counts == [2, 1]
