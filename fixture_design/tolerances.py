@@ -187,6 +187,12 @@ USUAL_FRICTION = 0.2
 #: round surfaces that were fitted well, then what still leaves a margin; what is known less well decides nothing.
 NORMALS_KNOWN_TO = (0.0, 1e-3, 2e-2)
 
+#: Something found in design is better than what is there if it is better by this part of it [-].
+BETTER = 1e-6
+
+#: Weights of a basic solution above this part of the largest are in its support [-].
+SUPPORT = 1e-9
+
 #: A margin of closure that is good enough, so that accuracy counts before a larger one [-].
 GOOD_MARGIN = 1e-3
 

@@ -22,7 +22,7 @@ from fixture_design.tolerances import DEFAULT
 
 #: Up to so many rows double description is faster than loading Qhull.
 _FEW_ROWS = 16
-#: More rows than this are not looked at: the number of facets grows with their cube in space.
+#: The hull of more rows than this is not taken: the number of facets grows with their cube in space.
 MAX_ROWS = 160
 #: Rounding of a facet's distance, for unit rows [-].
 _ROUNDING = 1e-12
@@ -56,9 +56,9 @@ def nearest_facet(rows: Rows) -> NearestFacet | None:
         rows: shape (m, d), of comparable length.
 
     Returns:
-        None if there are more than MAX_ROWS rows, or the hull is flat to working precision.
+        None if more than MAX_ROWS rows have a part in it, or the hull is flat to working precision.
     """
-    if not rows.shape[1] < len(rows) <= MAX_ROWS:
+    if len(rows) <= rows.shape[1]:
         return None
     white, sizes, axes = np.linalg.svd(rows, full_matrices=False)
     if sizes[-1] <= _ROUNDING * sizes[0]:
@@ -98,17 +98,22 @@ def _by_qhull(rows: Rows, sizes: Vector) -> tuple[np.ndarray, float] | None:
     everything, apart = np.arange(len(rows)), _JOGGLE * np.sqrt(rows.shape[1])
     for offset, moved, first in ((0.0, 0.0, _outermost(rows)), (0.0, 0.0, everything), (joggle, apart, everything)):
         try:
-            return _grown(rows + offset, sizes, first), float(moved)
+            facets = _grown(rows + offset, sizes, first)
         except QhullError:
             continue
+        return None if facets is None else (facets, float(moved))
     return None
 
 
-def _grown(rows: Rows, sizes: Vector, taken: Indices) -> np.ndarray:
-    """Facets of a hull of some rows, beginning with those ``taken``, the nearest one of which has no row beyond it."""
+def _grown(rows: Rows, sizes: Vector, taken: Indices) -> np.ndarray | None:
+    """Facets of a hull of some rows, beginning with those ``taken``, the nearest one of which has no row beyond it.
+
+    Returns:
+        None where that takes more than MAX_ROWS rows.
+    """
     from scipy.spatial import ConvexHull
 
-    while True:
+    while len(taken) <= MAX_ROWS:
         equations = ConvexHull(rows[taken]).equations
         normals, offsets = equations[:, :-1], -equations[:, -1]
         nearest = np.argsort(offsets / np.linalg.norm(normals / sizes, axis=1))[:_GROWING_AT]
@@ -118,6 +123,7 @@ def _grown(rows: Rows, sizes: Vector, taken: Indices) -> np.ndarray:
         if not beyond[0] or len(grown) == len(taken):
             return np.column_stack([normals, offsets])
         taken = grown
+    return None
 
 
 def _outermost(rows: Rows) -> Indices:

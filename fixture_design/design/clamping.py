@@ -12,13 +12,10 @@ from fixture_design.design.candidates import Several, flat
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import apart
 from fixture_design.design.standing import Standing
+from fixture_design.tolerances import BETTER, SUPPORT
 
 #: Rounds of moving every element once, at most.
 _MOST_ROUNDS = 20
-#: A place is better if the margin grows by this part of it [-].
-_BETTER = 1e-6
-#: Weights of a basic solution above this part of the largest are in its support [-].
-_SUPPORT = 1e-9
 
 
 def margins(rows: Several, sets: np.ndarray) -> np.ndarray:
@@ -61,10 +58,10 @@ def held_best(
                 continue
             sets = np.column_stack([np.broadcast_to(rest, (len(free), len(rest))), free])
             found = margins(rows, sets)
-            if found.max() > best * (1 + _BETTER):
+            if found.max() > best * (1 + BETTER):
                 best = float(found.max())
                 moving[place] = free[int(np.argmax(found))]
-        if best <= before * (1 + _BETTER):
+        if best <= before * (1 + BETTER):
             break
     return moving, best
 
@@ -90,7 +87,7 @@ def locators_for(
     if found.x is None:
         return None
     weights = found.x[: len(pool)]
-    chosen = pool[weights > _SUPPORT * weights.max(initial=0.0)]
+    chosen = pool[weights > SUPPORT * weights.max(initial=0.0)]
     if len(chosen) != rows.shape[1] or free_motion(rows[np.concatenate([chosen, clamps])]) is not None:
         return None
     return chosen

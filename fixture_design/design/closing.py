@@ -17,14 +17,12 @@ import numpy as np
 
 from fixture_design.arrays import Indices, Rows, Weights
 from fixture_design.cones.kernel import closure_tests
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import DEFAULT, SUPPORT
 
 #: Objectives tried before the smallest set so far is taken.
 TRIES = 60
 #: Of more rows than these, so many drawn at random are tried first.
 SOME = 500
-#: Weights of a basic solution above this part of the largest are in its support [-].
-_SUPPORT = 1e-9
 #: Objectives prefer rows outside the span so far by this factor [-].
 _OUTSIDE = 1e-3
 
@@ -83,7 +81,7 @@ def balanced_circuit(rows: Rows, costs: Weights, some_of: np.ndarray) -> Indices
     found = linprog(costs, A_eq=equalities, b_eq=right, bounds=(0, None), method="highs-ds")
     if found.x is None:
         return None
-    return np.flatnonzero(found.x > _SUPPORT * found.x.max())
+    return np.flatnonzero(found.x > SUPPORT * found.x.max())
 
 
 def without_spare(rows: Rows, chosen: Indices, rng: np.random.Generator) -> Indices:

@@ -16,10 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Points, Rows, Weights
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import BETTER, DEFAULT
 
-#: An exchange is made if it makes things better by this part of them [-]; fewer digits would go round in circles.
-_BETTER = 1e-6
 #: Exchanges of one descent at most.
 MOST_EXCHANGES = 100
 #: A determinant that shrinks by more than this in one exchange is on its way to a singular layout [-].
@@ -120,7 +118,7 @@ def exchanged(
         if allowed is not None:
             gains[~allowed(chosen)] = 0.0
         place, candidate = np.unravel_index(int(np.argmax(gains)), gains.shape)
-        if gains[place, candidate] <= 1 + _BETTER:
+        if gains[place, candidate] <= 1 + BETTER:
             break
         chosen = chosen.copy()
         chosen[place] = pool[candidate]

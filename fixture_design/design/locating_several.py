@@ -18,12 +18,10 @@ from jaxtyping import Float, Int
 from fixture_design.arrays import Indices, Mask, Rows, Weights
 from fixture_design.design.candidates import Several
 from fixture_design.design.problem import Problem
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import BETTER, DEFAULT
 
 #: Rounds of exchanging every locator once, at most.
 _MOST_ROUNDS = 20
-#: An exchange is made if it makes things better by this part of them [-].
-_BETTER = 1e-6
 
 
 def located_elements(problem: Problem, pool: Indices, rng: np.random.Generator) -> Indices | None:
@@ -131,8 +129,8 @@ def _exchanged(problem: Problem, pool: Indices, chosen: list[int]) -> Indices:
             own = np.array([problem.rows_of((index,)) for index in free.tolist()])
             numbers = np.hstack([np.broadcast_to(there, (len(free), len(there))), own])
             worth = inexactness(problem, problem.rows[numbers], _levers(problem, numbers))
-            if worth.min() < now * (1 - _BETTER):
+            if worth.min() < now * (1 - BETTER):
                 now, chosen[place] = float(worth.min()), int(free[int(np.argmin(worth))])
-        if now >= before * (1 - _BETTER):
+        if now >= before * (1 - BETTER):
             break
     return np.array(chosen, dtype=np.int64)

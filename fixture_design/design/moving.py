@@ -11,11 +11,10 @@ from fixture_design.design.clamping import margins
 from fixture_design.design.locating import MOST_EXCHANGES, exchanged
 from fixture_design.design.locating_several import inexactness_of
 from fixture_design.design.problem import Problem
-from fixture_design.tolerances import GOOD_MARGIN
+from fixture_design.tolerances import BETTER, GOOD_MARGIN
 
-#: Turns of moving all elements, at most, and candidates whose margin is looked at in each; a margin counts as larger
-#: by this part of it [-].
-_MOST_TURNS, _LOOKED_AT, _BETTER = 20, 16, 1e-6
+#: Turns of moving all elements, at most, and candidates whose margin is looked at in each.
+_MOST_TURNS, _LOOKED_AT = 20, 16
 
 
 def moved_while_closed(
@@ -66,10 +65,10 @@ def held_together(
             for margin, candidate in _holding_best(problem, rest, free):
                 moved = chosen.copy()
                 moved[place] = candidate
-                if margin > best * (1 + _BETTER) and not (locating and _loose(problem, moved[: len(locators)])):
+                if margin > best * (1 + BETTER) and not (locating and _loose(problem, moved[: len(locators)])):
                     chosen, best = moved, margin
                     break
-        if best <= before * (1 + _BETTER):
+        if best <= before * (1 + BETTER):
             break
     return chosen[: len(locators)], chosen[len(locators) :], best
 

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.analysis.hull import NearestFacet, nearest_facet
+from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Rows, Vector
 from fixture_design.errors import SolverError
 from fixture_design.tolerances import Tolerances
-
-#: So many rows are taken first, about, and so many join at once.
-_FIRST, _JOINING = 24, 8
 
 
 def least_stopped(rows: Rows, tolerances: Tolerances) -> tuple[Vector, bool]:
     """A unit motion u for which max_i d_i . u is least, and whether the rows close for certain all the same.
 
-    The normal of the hull's nearest facet, where that is found: of some rows first, which those beyond it join, until
-    none is. Else the least t of  d_i . u <= t  on the faces
+    The normal of the hull's nearest facet, where that is found. Else the least t of  d_i . u <= t  on the faces
     u_k = +-1 of the cube |u|_inf = 1, by a linear program each: for |u| = 1 nothing is below t / sqrt(d).
 
     Args:
@@ -26,30 +22,12 @@ def least_stopped(rows: Rows, tolerances: Tolerances) -> tuple[Vector, bool]:
     Raises:
         SolverError: a program ended without its optimum.
     """
-    facet = _nearest_facet_of_many(rows, tolerances)
+    facet = nearest_facet(rows)
     if facet is not None:
         return facet.motion, bool(facet.at_least > tolerances.near)
     found = [_on_face(rows, axis, sign) for axis in range(rows.shape[1]) for sign in (1.0, -1.0)]
     motion = min((u / np.linalg.norm(u) for u, _ in found), key=lambda u: float((rows @ u).max()))
     return motion, bool(min(least for _, least in found) / np.sqrt(rows.shape[1]) > tolerances.near)
-
-
-def _nearest_facet_of_many(rows: Rows, tolerances: Tolerances) -> NearestFacet | None:
-    """The facet nearest to the origin; None where that takes too many rows, or the hull is flat."""
-    taken = np.unique(
-        [*np.argmax(rows, axis=0), *np.argmin(rows, axis=0), *range(0, len(rows), 1 + len(rows) // _FIRST)]
-    )
-    while True:
-        facet = nearest_facet(rows[taken])
-        if facet is None:
-            return None
-        values = rows @ facet.motion
-        values[taken] = -np.inf
-        beyond = np.argsort(-values)[:_JOINING]
-        beyond = beyond[values[beyond] > facet.distance + tolerances.zero]
-        if not len(beyond):
-            return facet
-        taken = np.append(taken, beyond)
 
 
 def _on_face(rows: Rows, axis: int, sign: float) -> tuple[Vector, float]:

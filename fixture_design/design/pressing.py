@@ -12,7 +12,7 @@ from fixture_design.arrays import Indices
 from fixture_design.design.clamping import margins
 from fixture_design.design.problem import Problem
 from fixture_design.design.pushing import Program, Pushes
-from fixture_design.tolerances import DEFAULT, GOOD_MARGIN, LEAST_FRICTION
+from fixture_design.tolerances import BETTER, DEFAULT, GOOD_MARGIN, LEAST_FRICTION
 
 #: Rounds of column generation, and candidates that join in each.
 _MOST_ROUNDS, _AT_ONCE = 40, 4
@@ -20,8 +20,6 @@ _MOST_ROUNDS, _AT_ONCE = 40, 4
 _MOST_SETS, _MOST_SWAPS = 60, 12
 #: Locators outside that are tried in an exchange.
 _MOST_HELPFUL = 32
-#: A set is better if it pushes less by this part of it [-].
-_BETTER = 1e-6
 #: Clamps more than the fewest that close that are tried where these cannot hold the loads.
 _MOST_MORE = 3
 
@@ -146,7 +144,7 @@ def _least_of_as_many(problem: Problem, program: Program, locators: Indices, cla
     """As many clamps in the places where they push least and still close well, and what they push with in all [N]."""
     staying = clamps[np.isin(clamps, [*problem.clamps, *problem.spare])]
     moving = np.setdiff1d(clamps, staying)
-    least_margin = min(_margin(problem, locators, clamps), GOOD_MARGIN) * (1 - _BETTER)
+    least_margin = min(_margin(problem, locators, clamps), GOOD_MARGIN) * (1 - BETTER)
 
     def fits(some: Indices) -> bool:
         for place in range(len(some)):
@@ -163,9 +161,9 @@ def _least_of_as_many(problem: Problem, program: Program, locators: Indices, cla
     for some in islice(combinations(useful.tolist(), len(moving)), _MOST_SETS):
         if fits(np.array(some, dtype=np.int64)):
             least = program.total(locators, np.concatenate([staying, some]).astype(np.int64))
-            if least < total * (1 - _BETTER):
+            if least < total * (1 - BETTER):
                 best, total = np.concatenate([staying, some]).astype(np.int64), least
-        if total <= pushes.total * (1 + _BETTER):
+        if total <= pushes.total * (1 + BETTER):
             return best, total
     return _swapped(problem, program, locators, staying, best, total, fits)
 
@@ -193,7 +191,7 @@ def _swapped(
                 if not fits(np.setdiff1d(moved, staying)):
                     continue
                 least = program.total(locators, moved)
-                if least < total * (1 - _BETTER):
+                if least < total * (1 - BETTER):
                     best, total, failures = moved, least, 0
                     break
             if total < before:
@@ -228,7 +226,7 @@ def _exchanged_once(
     use = program.use(pushes.duals, outside)
     helpful = outside[np.argsort(-use)][: min(_MOST_HELPFUL, int((use > DEFAULT.near).sum()))]
     movable = [place for place in range(len(locators)) if locators[place] not in problem.locators]
-    least_margin = min(pressed.margin, GOOD_MARGIN) * (1 - _BETTER)
+    least_margin = min(pressed.margin, GOOD_MARGIN) * (1 - BETTER)
     for new in helpful.tolist():
         for place in movable:
             moved = locators.copy()
@@ -245,8 +243,8 @@ def _exchanged_once(
 
 def _less(program: Program, locators: Indices, clamps: Indices, than: Pushes) -> bool:
     if np.isfinite(than.total):
-        return program.total(locators, clamps) < than.total * (1 - _BETTER)
-    return program.least(locators, clamps).less_than(than, _BETTER)
+        return program.total(locators, clamps) < than.total * (1 - BETTER)
+    return program.least(locators, clamps).less_than(than, BETTER)
 
 
 def _locates(problem: Problem, locators: Indices) -> bool:

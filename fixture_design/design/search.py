@@ -83,7 +83,7 @@ def _whatever_closes(problem: Problem, seed: int) -> Outcome:
     clamps = np.concatenate([problem.kept[len(problem.locators) :], chosen[was], new[len(new) - clamped :]])
     locators = np.concatenate([problem.kept[: len(problem.locators)], new[: len(new) - clamped]])
     margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
-    found = Found(locators, clamps, None, accuracy(problem, locators), margin)
+    found = Found(locators, clamps, None, inexactness_of(problem, locators), margin)
     return Outcome(found, 0, not problem.vague, least_elements=least)
 
 
@@ -125,7 +125,9 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
                 problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
             )
         clamps, margin, preload, holds = pressed.clamps, pressed.margin, pressed.total, pressed.holds
-    return Found(_by_face(problem, locators), clamps, region.out, accuracy(problem, locators), margin, preload, holds)
+    return Found(
+        _by_face(problem, locators), clamps, region.out, inexactness_of(problem, locators), margin, preload, holds
+    )
 
 
 def _held(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> tuple[Indices, Indices, float]:
@@ -171,8 +173,3 @@ def _best_preload(problem: Problem, regions: Sequence[Region]) -> float | None:
         return None
     bounds = [least_bound(problem, program, region.pool)[0] for region in regions]
     return None if None in bounds else min(bound for bound in bounds if bound is not None)
-
-
-def accuracy(problem: Problem, locators: Indices) -> float:
-    """Of locators; small is good."""
-    return inexactness_of(problem, locators)
