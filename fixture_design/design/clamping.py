@@ -6,25 +6,49 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Points, Rows
-from fixture_design.cones.kernel import closure_tests
+from fixture_design.arrays import Indices, Points, Rows, Weights
+from fixture_design.cones.kernel import closure_tests, double_description
 from fixture_design.design.candidates import Several, flat
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import apart
 from fixture_design.design.standing import Standing
-from fixture_design.tolerances import BETTER, SUPPORT
+from fixture_design.tolerances import BETTER, DEFAULT, SUPPORT
 
 #: Rounds of moving every element once, at most.
 _MOST_ROUNDS = 20
+#: The motions that more rows leave free are too many to be listed every time.
+_FEW_ROWS = 16
 
 
 def margins(rows: Several, sets: np.ndarray) -> np.ndarray:
     """A lower bound of the margin of closure for sets of candidates, all of one size: shape (s, size) to (s,)."""
     each = rows.shape[1]
     flat_rows = np.ascontiguousarray(rows.reshape(-1, rows.shape[2]))
-    places = (sets[:, :, None] * each + np.arange(each)).reshape(len(sets), -1)
+    places = (sets[:, :, None] * each + np.arange(each)).reshape(len(sets), each * sets.shape[1])
     offsets = np.arange(len(sets) + 1) * places.shape[1]
     return closure_tests(flat_rows, offsets, np.ascontiguousarray(places.ravel())).lower
+
+
+def margins_with(rows: Several, rest: Indices, pool: Indices, least: float = 0.0) -> Weights:
+    """Lower bounds of the margin of closure of the rest with each of the pool; 0 for those not above ``least``.
+
+    What the rest leaves free, a motion u with |u| = 1, is stopped by the one that joins alone: no margin is above its
+    max_j d_j . u. That leaves few to be looked at.
+    """
+    found = np.zeros(len(pool))
+    likely = np.flatnonzero(_most_with(rows, rest, pool) > least)
+    found[likely] = margins(rows, np.column_stack([np.broadcast_to(rest, (len(likely), len(rest))), pool[likely]]))
+    return np.where(found > least, found, 0.0)
+
+
+def _most_with(rows: Several, rest: Indices, pool: Indices) -> Weights:
+    """An upper bound of the margin of closure of the rest with each of the pool; infinite where none is known."""
+    there = flat(rows, rest)
+    if len(there) > _FEW_ROWS:
+        return np.full(len(pool), np.inf)
+    free = double_description(there, there[:0], DEFAULT.tie)
+    motions = np.vstack([free.rays, free.lines, -free.lines])
+    return (rows[pool] @ motions.T).max(axis=1).min(axis=1, initial=np.inf)
 
 
 def held_best(
@@ -56,8 +80,7 @@ def held_best(
                 free = free[standing.free(rest, free)]
             if not len(free):
                 continue
-            sets = np.column_stack([np.broadcast_to(rest, (len(free), len(rest))), free])
-            found = margins(rows, sets)
+            found = margins_with(rows, rest, free, best)
             if found.max() > best * (1 + BETTER):
                 best = float(found.max())
                 moving[place] = free[int(np.argmax(found))]

@@ -95,7 +95,7 @@ def exchanged(
     chosen: Indices,
     fixed: Sequence[int] | Indices,
     features: Features | None = None,
-    allowed: Callable[[Indices], np.ndarray] | None = None,
+    allowed: Callable[[Indices, np.ndarray], np.ndarray] | None = None,
     most: int = MOST_EXCHANGES,
 ) -> Indices:
     """Locators after the best exchanges, one after the other, until none makes them better.
@@ -105,8 +105,8 @@ def exchanged(
         chosen: independent ones to begin with.  fixed: those of them that stay.
         features: what accuracy is measured by; None for the volume.
         most: exchanges.
-        allowed: for locators at some indices which of the pool may join while each of them leaves, shape
-            (k, len(pool)).
+        allowed: for locators at some indices, and those of the pool that would be better while each of them leaves,
+            shape (k, len(pool)): which of these may join.
     """
     basis = _span(rows, chosen)
     inside = rows @ basis.T
@@ -116,7 +116,7 @@ def exchanged(
         gains[~movable] = 0.0
         gains[:, np.isin(pool, chosen)] = 0.0
         if allowed is not None:
-            gains[~allowed(chosen)] = 0.0
+            gains[~allowed(chosen, gains > 1 + BETTER)] = 0.0
         place, candidate = np.unravel_index(int(np.argmax(gains)), gains.shape)
         if gains[place, candidate] <= 1 + BETTER:
             break

@@ -7,7 +7,7 @@ import numpy as np
 from fixture_design.analysis.hull import nearest_facet
 from fixture_design.arrays import Indices, Mask
 from fixture_design.design.candidates import flat
-from fixture_design.design.clamping import margins
+from fixture_design.design.clamping import margins, margins_with
 from fixture_design.design.locating import MOST_EXCHANGES, exchanged
 from fixture_design.design.locating_several import inexactness_of
 from fixture_design.design.problem import Problem
@@ -36,9 +36,12 @@ def moved_while_closed(
         now = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
         least = min(now, max(GOOD_MARGIN, 2 * problem.candidates.tolerances.near))
 
-    def allowed(chosen: Indices) -> np.ndarray:
-        return np.array([_fits(problem, pool, np.concatenate([np.delete(chosen, place), clamps]), least)
-                         for place in range(len(chosen))])  # fmt: skip
+    def allowed(chosen: Indices, better: np.ndarray) -> np.ndarray:
+        found = better.copy()
+        for place in range(len(chosen)):
+            rest = np.concatenate([np.delete(chosen, place), clamps])
+            found[place, better[place]] = _fits(problem, pool[better[place]], rest, least)
+        return found
 
     return exchanged(problem.rows, pool, locators, fixed, problem.features, allowed, most)
 
@@ -78,7 +81,7 @@ def _holding_best(problem: Problem, rest: Indices, free: Indices) -> list[tuple[
     one that is there.
     """
     rows = problem.closing_rows
-    bounds = margins(rows, np.column_stack([np.broadcast_to(rest, (len(free), len(rest))), free]))
+    bounds = margins_with(rows, rest, free)
     looked_at = np.union1d(np.argsort(-bounds, kind="stable")[:_LOOKED_AT], [len(free) - 1])
     found = []
     for choice in looked_at[bounds[looked_at] > 0]:
@@ -96,5 +99,4 @@ def _fits(problem: Problem, pool: Indices, rest: Indices, least: float) -> Mask:
     joins = problem.joins(pool, rest)
     if problem.closes is None:
         return joins
-    sets = np.column_stack([np.broadcast_to(rest, (len(pool), len(rest))), pool])
-    return joins & (margins(problem.closing_rows, sets) > least)
+    return joins & (margins_with(problem.closing_rows, rest, pool, least) > 0)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fixture_design.arrays import Indices
-from fixture_design.design.clamping import held_best, locators_for, margins
+from fixture_design.design.clamping import held_best, locators_for, margins_with
 from fixture_design.design.closing import fewest_closing
 from fixture_design.design.found import Found
 from fixture_design.design.hitting import fewest_stopping
@@ -65,8 +65,8 @@ def _located(problem: Problem, region: Region, rng: np.random.Generator) -> Indi
         owners = np.concatenate([problem.kept, np.asarray(chosen, dtype=np.int64) // problem.each])
         return problem.joins(usable, owners)
 
-    def allowed(chosen: Indices) -> np.ndarray:
-        return np.array([joins(np.delete(chosen, place)) for place in range(len(chosen))])
+    def allowed(chosen: Indices, better: np.ndarray) -> np.ndarray:
+        return better & np.array([joins(np.delete(chosen, place)) for place in range(len(chosen))])
 
     spaced = problem.crowded
     rows = independent(problem.rows, pool, kept, rng, problem.candidates.freedoms, joins if spaced else None)
@@ -141,8 +141,7 @@ def _one_elsewhere(problem: Problem, best: Found, rng: np.random.Generator) -> I
     clamps = rng.permutation(best.clamps)
     rest = np.concatenate([best.locators, clamps[1:]])
     free = problem.clampable[problem.joins(problem.clampable, rest)]
-    sets = np.column_stack([np.broadcast_to(rest, (len(free), len(rest))), free])
-    free = free[margins(problem.closing_rows, sets) > 0]
+    free = free[margins_with(problem.closing_rows, rest, free) > 0]
     return np.append(clamps[1:], rng.choice(free)) if len(free) else clamps
 
 
