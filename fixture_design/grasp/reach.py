@@ -36,6 +36,9 @@ _INSIDE = 0.98
 #: Constraints hold if they are missed by no more than this [m, rad].
 _HOLDS = 1e-5
 
+#: How far a pad may be beside its point where more than two must lie flat [m]: few hands reach three exactly.
+_ASIDE = 5e-3
+
 #: How far from a pad's middle its other two points are [m].
 _BESIDE = 0.01
 
@@ -73,8 +76,9 @@ class Reach:
                 row = np.array([[1.0, -joint.multiplier]])
                 both = np.array([q[mine[number]], q[mine[other]]])
                 program.AddLinearEqualityConstraint(row, np.array([joint.offset]), both)
+        aside = _ASIDE if len(seed.tips) > 2 else _NEAR
         for tip, point, normal in zip(seed.tips, spots.points, spots.normals, strict=True):
-            self._prescribe(ik, self.model.fingertips[tip], point, normal)
+            self._prescribe(ik, self.model.fingertips[tip], point, normal, aside)
         solver: Any = SnoptSolver()
         guess = np.zeros(len(q))
         guess[mine] = np.clip(seed.q, self.model.lower, self.model.upper)
@@ -88,14 +92,17 @@ class Reach:
         X_HP = _pose_of(values[start : start + 7])
         return self.model.completed(values[mine][self.model.free]), X_HP.inverse()
 
-    def _prescribe(self, ik: Any, tip: Fingertip, point: np.ndarray, normal: np.ndarray) -> None:
+    def _prescribe(self, ik: Any, tip: Fingertip, point: np.ndarray, normal: np.ndarray, aside: float) -> None:
+        """Where a tip is; of a pad up to ``aside`` [m] beside the point."""
         link, part = self._plant.GetFrameByName(tip.link), self._plant.GetFrameByName(_PART)
-        wanted = point + tip.radius * normal
-        ik.AddPositionConstraint(link, tip.at, part, wanted - _NEAR, wanted + _NEAR)
         if tip.pad is None:
+            wanted = point + tip.radius * normal
+            ik.AddPositionConstraint(link, tip.at, part, wanted - _NEAR, wanted + _NEAR)
             ik.AddAngleBetweenVectorsConstraint(link, tip.facing, part, -normal, 0.0, tip.spread * _INSIDE)
             return
-        X_PN = _tangent_frame(point, normal)
+        X_PN = _tangent_frame(point + tip.radius * normal, normal)
+        middle = np.array([aside, aside, _NEAR])
+        ik.AddPositionConstraint(link, tip.at, part, X_PN, -middle, middle)
         everywhere = np.full(2, np.inf)
         for beside in (tip.sideways, tip.across):
             p_LQ = tip.at + _BESIDE * beside

@@ -40,7 +40,7 @@ from fixture_design.grasp.spots import (
     spots_at,
     spread,
 )
-from fixture_design.layout import Answer, Part
+from fixture_design.layout import Answer, Part, Pose
 
 #: Words and how much is done, 0 to 1.
 Progress = Callable[[str, float], None]
@@ -51,8 +51,8 @@ TRIES, DRAFTS, JUDGED = 160, 3, 2
 #: Failures in a row after which a family is given up.
 PATIENCE = 24
 
-#: Seeds tried for one pair of points.
-_SEEDS = 3
+#: Seeds tried for one pair of points, and those that fit best from which they are taken.
+_SEEDS, _ALIKE = 6, 48
 
 #: Sets whose seeds are looked up, so many each; and those of all seeds that are compared by what runs into the part.
 _SETS, _LOOKED_UP, _COMPARED = 1500, 4, 600
@@ -245,7 +245,7 @@ class _Run:
                 break
             share = number / self.search.tries
             self.progress(f"{len(drafts)} grasps; trying {', '.join(one.features)}", share)
-            draft = self._first(one, iter(one.seeds) if one.seeds else self._seeds(library, one.spots))
+            draft = self._first(one, ((seed,) for seed in one.seeds) if one.seeds else self._ways(library, one.spots))
             if draft is not None:
                 drafts.append(draft)
                 families[one.features] += 1
@@ -254,33 +254,38 @@ class _Run:
                 failures[one.features] += 1
         return drafts
 
-    def _seeds(self, library: Library, spots: Spots) -> Iterator[Seed]:
-        # a hand with one joint has one way to be as wide as that
-        count = 1 if len(self.model.free) == 1 else _SEEDS
-        for seed in library.seeds(spots, count):
-            yield from rolled(seed, spots, self.rng)
-
-    def _first(self, wanted: _Wanted, seeds: Iterator[Seed]) -> Draft | None:
-        """The first seed that leads to a grasp."""
-        outcome = "nothing reaches there"
+    def _ways(self, library: Library, spots: Spots) -> Iterator[Iterable[Seed]]:
+        """Configurations that fit two spots, each with ways round the line between them."""
+        if len(self.model.free) == 1:  # one way to be as wide as that
+            seeds = library.seeds(spots, 1)
+        else:
+            seeds = library.seeds(spots, _ALIKE)
+            # which ones differs from pair to pair: those of two parallel faces all have the same nearest ones
+            seeds = [seeds[number] for number in np.sort(self.rng.choice(len(seeds), min(_SEEDS, len(seeds)), False))]
         for seed in seeds:
-            found = self.reach.solve(wanted.spots, seed)
-            if found is None:
-                continue
-            q, X_PH = found
-            posture = Posture(self.model, q, composed(self.site.part.pose, X_PH))
-            tips = [self.model.fingertips[tip] for tip in seed.tips]
-            in_the_way = obstacle(posture, self.site, tips)
-            if in_the_way is not None:
-                outcome = in_the_way
-                continue
-            draft = drafted(posture, self.site)
-            if isinstance(draft, Draft):
-                self.outcomes["closed"] += 1
-                return draft
-            outcome = draft
+            yield rolled(seed, spots, self.rng)
+
+    def _first(self, wanted: _Wanted, ways: Iterable[Iterable[Seed]]) -> Draft | None:
+        """The first seed that leads to a grasp; of a way that cannot be solved the others are the same but turned."""
+        outcome = "nothing reaches there"
+        for way in ways:
+            for seed in way:
+                found = self.reach.solve(wanted.spots, seed)
+                if found is None:
+                    break
+                draft = self._drafted(seed, *found)
+                if isinstance(draft, Draft):
+                    self.outcomes["closed"] += 1
+                    return draft
+                outcome = draft
         self.outcomes[outcome] += 1
         return None
+
+    def _drafted(self, seed: Seed, q: np.ndarray, X_PH: Pose) -> Draft | str:
+        """The grasp, or what is in its way, or why it is none."""
+        posture = Posture(self.model, q, composed(self.site.part.pose, X_PH))
+        in_the_way = obstacle(posture, self.site, [self.model.fingertips[tip] for tip in seed.tips])
+        return drafted(posture, self.site) if in_the_way is None else in_the_way
 
     def _result(self, drafts: list[Draft]) -> GraspResult:
         judged_ones: list[Grasp] = []
