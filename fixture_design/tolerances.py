@@ -183,9 +183,13 @@ HELD = 1e-6
 #: Coefficient of friction that design takes where a part cannot be closed without [-]: steel on steel, not greased.
 USUAL_FRICTION = 0.2
 
-#: How far off the normals of candidates may be that design tries, one after the other [rad]: plane facets as they are,
-#: round surfaces that were fitted well, then what still leaves a margin; what is known less well decides nothing.
-NORMALS_KNOWN_TO = (0.0, 1e-3, 2e-2)
+#: How far off the normals of candidates may be that design tries, one after the other [rad]: plane facets as a file's
+#: digits leave them; where that only just fails, those that need none; round surfaces that were fitted well; then what
+#: still leaves a margin. What is known less well decides nothing.
+NORMALS_KNOWN_TO = (1e-5, 0.0, 1e-3, 2e-2)
+
+#: Normals this well known can be counted on where there is a margin [rad].
+KNOWN_WELL = 1e-3
 
 #: Something found in design is better than what is there if it is better by this part of it [-].
 BETTER = 1e-6

@@ -59,6 +59,7 @@ def classifier(
         at_least_zero(value, option)
     if not (isfinite(accuracy) and accuracy > 0):
         raise InputError("--accuracy takes a number > 0", found=repr(accuracy))
+    _require_used(measure, mass, floor, twist_noise)
     known = read_graph(graph)
     if noise > 0 and floor == 0 and mass == 0 and measure != "displacement":
         say("--noise without --floor: forces of a part in free air are noise, and fit no state or a wrong one; "
@@ -90,6 +91,16 @@ def classifier(
         typer.echo(dumps(classifier_to_dict(made)))
     else:
         _print(made)
+
+
+def _require_used(measure: str, mass: float, floor: float, twist_noise: float) -> None:
+    """No option is given that nothing would come of."""
+    if floor and mass:
+        raise InputError("--floor is not used with --mass: no force tells something, then")
+    if floor and measure == "displacement":
+        raise InputError("--floor is of forces, and --measure displacement measures none")
+    if twist_noise and measure == "force":
+        raise InputError("--twist-noise is of displacements, and --measure force measures none")
 
 
 def _write(made: Classifier, out: Path | None, c_file: Path | None, python_file: Path | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import groupby
+from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -32,7 +33,9 @@ def recognize(
     sensor: Annotated[
         str | None,
         typer.Option(
-            "--sensor", help="The sensor's pose at the part's origin.", metavar="X,Y,THETA or X,Y,Z,ROLL,PITCH,YAW"
+            "--sensor",
+            help="The sensor's pose at the part's origin (m, rad).",
+            metavar="X,Y,THETA or X,Y,Z,ROLL,PITCH,YAW",
         ),
     ] = None,
     tare: Annotated[
@@ -44,6 +47,9 @@ def recognize(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
 ) -> None:
     """Tell for every row of a log which contact states remain possible, after those before and by the graph.
+
+    Forces are those that the robot applies to the part: pressed onto a floor, fy < 0 (in space fz < 0). A sensor that
+    shows what the part applies to the robot has the other sign.
 
     Exit code: 0, 3 some rows fit no state, 2 bad input.
     """
@@ -83,6 +89,8 @@ def _sensor(known: Classifier, rows: Log, pose: str | None, tare: str | None, ta
     size = 3 * (plane - 1)
     if where is not None and len(where) != size:
         raise InputError(f"--sensor takes {size} numbers here", found=pose)
+    if where is not None and (turns := [angle for angle in where[plane:] if abs(angle) > 2 * pi]):
+        raise InputError("--sensor takes angles in radians", found=f"{turns[0]:g}", expected="at most a full turn")
     if zero is not None and len(zero) != size:
         raise InputError(f"--tare takes {size} numbers here", found=tare)
     if zero is not None and tare_rows:

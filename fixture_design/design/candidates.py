@@ -18,7 +18,7 @@ from jaxtyping import Float
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
 from fixture_design.contacts import Contact, Provenance, Scale, face_vectors, tangents, unit_normal
 from fixture_design.layout import Element, PointTip, Tip
-from fixture_design.tolerances import DEFAULT, NORMALS_KNOWN_TO, Tolerances
+from fixture_design.tolerances import DEFAULT, KNOWN_WELL, Tolerances
 
 #: For each candidate its points, normals or rows, as many for each: shape (n, k, ...); unused ones are zero.
 Several = Float[np.ndarray, "n k _"]
@@ -182,7 +182,7 @@ class Candidates:
         )
 
     def with_elements(
-        self, found: Sequence[tuple[Element, Sequence[Contact]]], known_to: float = NORMALS_KNOWN_TO[1]
+        self, found: Sequence[tuple[Element, Sequence[Contact]]], known_to: float = KNOWN_WELL
     ) -> Candidates:
         """These, and elements with the contacts they have: appended, so that indices stay.
 

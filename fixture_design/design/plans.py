@@ -10,7 +10,7 @@ from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import GeometryError
 from fixture_design.layout import Requirement
-from fixture_design.tolerances import NORMALS_KNOWN_TO, USUAL_FRICTION
+from fixture_design.tolerances import KNOWN_WELL, NORMALS_KNOWN_TO, USUAL_FRICTION
 
 Require = Mapping[str, tuple[Requirement, ...]]
 
@@ -59,9 +59,13 @@ def by_certainty(candidates: Candidates) -> Iterator[Candidates]:
     A group that cannot notice all that the next one can is left out: the end faces of a shaft are exact, and alone they
     are no place for its locators.
     """
-    groups = [candidates.chosen(candidates.errors <= error) for error in NORMALS_KNOWN_TO]
-    groups = [one for k, one in enumerate(groups) if len(one) and (k == 0 or len(one) > len(groups[k - 1]))]
+    groups: list[Candidates] = []
+    for error in NORMALS_KNOWN_TO:
+        group = candidates.chosen(candidates.errors <= error)
+        if len(group) and all(len(group) != len(other) for other in groups):
+            groups.append(group)
     if not groups:
         raise GeometryError("no candidate has a normal that is known well enough", expected="facets that are flat")
-    most = max(one.freedoms for one in groups[: len(NORMALS_KNOWN_TO) - 1])
+    known = len(candidates.chosen(candidates.errors <= KNOWN_WELL))
+    most = max((one.freedoms for one in groups if len(one) <= known), default=groups[0].freedoms)
     yield from (one for one in groups if one.freedoms >= most)

@@ -119,6 +119,8 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
 
 def _columns(headings: Sequence[str], path: Path, line: int, plane: int, measure: Measure) -> list[str]:
     place = f"line {line}"
+    if len(headings) == 1 and (mark := next((mark for mark in ";\t|" if mark in headings[0]), None)):
+        raise FileFormatError(f"cells are parted by {mark!r}", source=path, place=place, expected="commas")
     names = [_name(heading, path, place) for heading in headings]
     if twice := [name for name in dict.fromkeys(names) if names.count(name) > 1]:
         raise FileFormatError(f"the column {twice[0]!r} is there twice", source=path, place=place)

@@ -34,6 +34,10 @@ class Noise:
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0):
                 raise InputError(f"a noise bound ({name}) must be a number >= 0", found=repr(value))
+        for name in ("force", "displacement"):
+            if (value := getattr(self, name)) >= 1:
+                expected = "below 1: an error as large as what is measured leaves nothing; 0.05 is 5 %"
+                raise InputError(f"a noise bound ({name}) is relative", found=repr(value), expected=expected)
 
 
 @dataclass(frozen=True)
@@ -138,8 +142,9 @@ class Classifier:
         (shorter than the floor) is in all sets; with a known weight there is no floor, since no force tells something.
 
         Args:
-            wrench: p = [f; m], the force applied to the part (2-16), shape (3,) or (6,) [N, N m]; moments about the
-                moving part's origin, in the axes that `signals` states.
+            wrench: p = [f; m], the force that the robot applies to the part (2-16), the opposite of what the contacts
+                apply: pressed onto a floor, it points down. Shape (3,) or (6,) [N, N m]; moments about the moving
+                part's origin, in the axes that `signals` states.
             twist: dq = [dx; dtheta] of any length, likewise [m, rad].
             previous: the state before, or those it may have been: then only these and their successors are asked, and
                 all others if none of them is possible.
@@ -151,7 +156,7 @@ class Classifier:
         signal, force = self._signal(wrench, twist)
         margins = self.margins_of(signal)
         asked = self._everything if previous is None else self._asked(previous)
-        contrary = self._contrary(signal)
+        contrary = self.contrary(signal)
         possible = [] if contrary else asked[margins[asked] >= 0].tolist()
         expected = bool(possible) or previous is None
         if not expected and not contrary:
@@ -229,15 +234,15 @@ class Classifier:
         signal = self.signals.signal(wrench, twist, self.noise.floor)
         return signal, bool(signal.any())
 
-    def _contrary(self, signal: Vector) -> bool:
+    def contrary(self, signal: Vector) -> bool:
         """Whether force and displacement, both measured, do negative work beyond noise and widening."""
-        signals = self.signals
-        if signals.measure != "both" or signals.weight:
-            return False
-        size = signals.wrench_size
-        return float(signal[:size] @ signal[size:]) < -self._work_allowance
+        size = self.signals.wrench_size
+        return self.signals.measure == "both" and float(signal[:size] @ signal[size:]) < -self.work_allowance
 
     @cached_property
-    def _work_allowance(self) -> float:
+    def work_allowance(self) -> float:
+        """How negative the work of unit vectors of force and displacement may be [-]; 2 where that is not asked."""
+        if self.signals.measure != "both" or self.signals.weight:
+            return 2.0
         widest = max(s.measured.widening.force + s.measured.widening.displacement for s in self.states)
         return widest + self.noise.force + self.noise.displacement

@@ -86,6 +86,8 @@ def smallest(rows: Rows, others: Sequence[Against], tolerances: Tolerances = DEF
         RuntimeError: the solver failed; a fault of ours.
     """
     unit, where = unit_rows(rows)
+    if not len(unit):
+        return ()  # a cone without faces is everything, and nothing tells it from others
     signals = [s for other in others for s in other.generators]
     cuts = {row.tobytes(): row for s in signals if (row := unit @ s > tolerances.tie).any()}
     while True:

@@ -21,8 +21,9 @@ class Log:
     """Measurements in a row, in the sensor's frame.
 
     Attributes:
-        times: shape (n,) [s].  wrenches: applied to the part, shape (n, d); zeros, which tell nothing, where none were
-            measured.  twists: likewise, or None.
+        times: shape (n,) [s].
+        wrenches: that the robot applies to the part, shape (n, d); zeros, which tell nothing, where none were measured.
+        twists: likewise, or None.
         truth: of each row the contacts that there really were, sorted, where somebody knows; only for scoring.
     """
 

@@ -106,11 +106,13 @@ def discriminated(
     """The states that the discriminants leave after ``source``: those whose DT holds the measurement.
 
     Sure only of measurements that are in the widened set of some successor: between these the discriminants tell as the
-    whole sets do, and of others they say nothing. The work of force and displacement is not tested.
+    whole sets do, and of others they say nothing. None are left where force and displacement do negative work.
 
     Raises:
         InputError, UnknownNameError: as `Classifier.recognize`.
     """
     signal = classifier.signals.signal(wrench, twist, classifier.noise.floor)
     row = classifier.ids.index(classifier.state(source).id)
+    if classifier.contrary(signal):
+        return ()
     return tuple(classifier.ids[k] for k in sorted(tables.possible(signal, row)))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cache
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fixture_design.errors import InputError
 from fixture_design.recognition import Classifier, Recogniser
 from fixture_design.simulation.setup import WristSensor
 
@@ -21,17 +23,20 @@ AMBIGUOUS = -1
 def recognition_system(classifier: Classifier, period: float, known: str | Iterable[str] | None = None) -> LeafSystem:
     """Recognition as a Drake system: each period one sample, and what remains possible after it.
 
-    Input ports: `wrench`, [f; m] applied to the part as `Classifier.recognize` takes it; `twist`, likewise, which may
-    be left unconnected. Output ports: `state`, shape (1,), the row of the state in ``classifier.ids``, or -1 while it
-    is not one alone; `possible`, shape (number of states,), 1 for each state that is, else 0; `margins`, likewise, by
-    how much the latest sample is inside each state's set (-inf: not asked).
+    Input ports: `wrench`, [f; m] that the robot applies to the part as `Classifier.recognize` takes it; `twist`,
+    likewise, which may be left unconnected. Output ports: `state`, shape (1,), the row of the state in
+    ``classifier.ids``, or -1 while it is not one alone; `possible`, shape (number of states,), 1 for each state that
+    is, else 0; `margins`, likewise, by how much the latest sample is inside each state's set (-inf: not asked).
 
     Args:
         period: of samples [s].  known: the state at the start, or those that it may be.
 
     Raises:
         UnknownNameError: no such state.
+        InputError: a period that is no positive number.
     """
+    if not (isfinite(period) and period > 0):
+        raise InputError("a period is a positive number", found=repr(period), expected="seconds")
     return _recognition_class()(classifier, period, Recogniser.start(classifier, known))
 
 

@@ -145,6 +145,7 @@ LOG = "t [s], fx [N], fy, mz [N m], fz\n0, 0, -5, 1, 0\n\n# later\n0.1, 0, -5, 1
         (LOG.replace("1.5", ""), r"line 5, row 2, column mz: a number is missing"),
         (LOG.replace("1.5, 0", "1.5"), r"line 5: row 2 has 4 cells for 5 columns"),
         (LOG.replace("1.5", "1e300"), r"row 2, column mz: not a usable number"),
+        (LOG.replace(",", ";"), r"line 1: cells are parted by ';'; expected commas"),
         (LOG.replace("fz", "torque"), r"unknown column 'torque'"),
         (LOG.replace("fz", "fy"), r"the column 'fy' is there twice"),
         (LOG.replace("fz", "dx"), r"the log has no column 'dy', 'rz'"),
@@ -253,6 +254,11 @@ def test_exported_code_says_the_same(four: Classifier, four_jointly: Classifier,
             if compiled is not None:
                 assert compiled(classifier, source, wrench, twist) == here
     assert len(seen) > 5
+    if joint:
+        against = [-wrench * np.array([1.0, 1.0, classifier.signals.length**-2]) for wrench in WRENCHES]
+        for wrench, twist in zip(WRENCHES, against, strict=True):
+            assert functions["next_states"](classifier.ids[0], wrench, twist) == []
+            assert compiled is None or compiled(classifier, classifier.ids[0], wrench, twist) == ()
     for bad in ([np.nan, 0.0, 1.0], [0.0, np.inf, 0.0]):
         wrench, twist = np.array(bad), np.ones(3) if joint else None
         for source in classifier.ids:
@@ -343,7 +349,9 @@ def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -
     assert command("recognize", tmp_path / "graph.json", log).code == 2
     assert command("classifier", tmp_path / "c.json").code == 2
     assert "set --floor" in made.err
-    for option, value in (("--friction", "-1"), ("--noise", "nan"), ("--floor", "-1"), ("--seed", "-1")):
+    for option, value in (
+        ("--friction", "-1"), ("--noise", "nan"), ("--floor", "-1"), ("--seed", "-1"), ("--twist-noise", "0.1")
+    ):  # fmt: skip
         bad = command("classifier", tmp_path / "graph.json", option, value)
         assert bad.code == 2
         assert option in bad.err
@@ -351,6 +359,9 @@ def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -
     bad = command("recognize", tmp_path / "c.json", log, "--start", "N99")
     assert bad.code == 2
     assert "--start: no state is called 'N99'" in bad.err
+    assert "(force) is relative; found 10.0" in command("classifier", tmp_path / "graph.json", "--noise", "10").err
+    assert command("classifier", tmp_path / "graph.json", "--floor", "1", "--mass", "1").code == 2
+    assert "in radians; found 90" in command("recognize", tmp_path / "c.json", log, "--sensor", "0,0,90").err
     for option in ("--sensor", "--tare"):
         bad = command("recognize", tmp_path / "c.json", log, option, "1,2")
         assert bad.code == 2

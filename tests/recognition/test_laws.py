@@ -223,3 +223,11 @@ def test_sets_of_coincident_apices_contain_fresh_configurations(graph: ContactSt
         assert len(q) > 100
         assert np.count_nonzero(beyond > 1e-9) <= 0.03 * len(q), state.id
         assert beyond.max() <= 0.025, state.id
+
+
+def test_a_cone_without_faces_is_told_from_nothing() -> None:
+    """Sets of displacements: a part in free air may move in every way."""
+    none = np.zeros((0, 3))
+    half = PolyhedralConvexCone.from_faces(np.array([[1.0, 0.0, 0.0]]))
+    assert smallest(none, [Against.of(half)]) == ()
+    assert smallest(none, []) == ()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fixture_design.assembly import ContactStateGraph
-from fixture_design.errors import UnknownNameError
+from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.io import read_log, write_log
 from fixture_design.recognition import Classifier, Log, Recogniser, Sensor, recognize_log
 from fixture_design.simulation import Outcome, recognition_system
@@ -60,6 +60,9 @@ def test_a_state_that_is_known_is_shown_from_the_start(peg_classifier: Classifie
     assert unknown.GetOutputPort("state").Eval(unknown.CreateDefaultContext())[0] == AMBIGUOUS
     with pytest.raises(UnknownNameError, match="N77"):
         recognition_system(peg_classifier, PERIOD, "N77")
+    for period in (0.0, -1.0, np.nan):
+        with pytest.raises(InputError, match="a period is a positive number"):
+            recognition_system(peg_classifier, period)
 
 
 @pytest.mark.parametrize("name", ["insertion_1", "insertion_2"])
