@@ -41,7 +41,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield f"margin of closure {result.margin:.3g}"
     if result.preload is not None:
         yield _preload_in_words(result)
-    for note in result.notes:
+    seen = () if result.verdict is None else result.verdict.notes
+    for note in dict.fromkeys((*result.notes, *seen)):
         yield printable(f"note: {note}")
     outcome = _OUTCOME[result.satisfied]
     yield printable(f"{outcome}: {result.reason}" if result.reason else outcome)

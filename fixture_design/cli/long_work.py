@@ -1,4 +1,4 @@
-"""Work that takes its time: progress on stderr, and Ctrl-C that asks for the best so far."""
+"""Work that takes its time: progress on stderr, and Ctrl-C or a termination that asks for the best so far."""
 
 from __future__ import annotations
 
@@ -11,22 +11,24 @@ from contextlib import contextmanager
 
 @contextmanager
 def interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C once asks for the best so far; twice ends the program as ever."""
+    """Ctrl-C, or a termination, once asks for the best so far; twice ends the program as ever."""
     asked = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield asked.is_set
         return
-    before = signal.getsignal(signal.SIGINT)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
 
     def ask(number: int, frame: object) -> None:
         asked.set()
-        signal.signal(signal.SIGINT, before)
+        signal.signal(number, before[signal.Signals(number)])
 
-    signal.signal(signal.SIGINT, ask)
+    for number in before:
+        signal.signal(number, ask)
     try:
         yield asked.is_set
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def shown(words: str, part: float) -> None:

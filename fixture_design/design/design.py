@@ -9,7 +9,7 @@ from itertools import product
 from fixture_design.arrays import Vector
 from fixture_design.design.attempt import Asked, attempt, better_of, leaves_straight, opens_all
 from fixture_design.design.fitting import fitting
-from fixture_design.design.plans import Plan, by_certainty, plans
+from fixture_design.design.plans import Plan, by_certainty, plans, unused_friction
 from fixture_design.design.result import DesignResult
 from fixture_design.design.shortfall import left_out_in_words, not_yet_no
 from fixture_design.design.task import Task
@@ -43,7 +43,7 @@ def design(
     progress("candidates", 0.0)
     candidates, left_out_notes = candidates_of(task, ways, ways.spots(task.candidates, seed))
     candidates, no_room = fitting(task, ways, candidates)
-    left_out_notes += no_room
+    left_out_notes += no_room + unused_friction(task)
     asked = Asked(task, ways, seed, progress, cancelled)
     best: DesignResult | None = None
     free: Vector | None = None

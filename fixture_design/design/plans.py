@@ -53,6 +53,16 @@ def plans(task: Task, ways: Ways) -> Iterator[Plan]:
     )
 
 
+def unused_friction(task: Task) -> tuple[str, ...]:
+    """A note where friction is given, and the default requirements do without it."""
+    if task.require is not None or not task.friction:
+        return ()
+    return (
+        f"friction {task.friction:g} makes no difference to the default requirements, which close the part without it; "
+        "`require: {locators: [deterministic, loadable], all: [force_closure]}` makes use of it",
+    )
+
+
 def by_certainty(candidates: Candidates) -> Iterator[Candidates]:
     """Candidates whose normals are known best; then those known less well too, as far as that adds any.
 

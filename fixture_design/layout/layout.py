@@ -112,7 +112,7 @@ class Element:
     """A tip that touches the part at the surface point nearest to ``at``.
 
     Attributes:
-        at: p_W, shape (3,) or (2,) [m].  tip: its shape.  axis: of a pin, in W.
+        at: p_W, shape (3,) or (2,) [m].  tip: its shape.  axis: of a pin, from its foot to its end, in W.
         tolerance: of its position along the normal [m].  friction: None takes the layout's.
         preload: what a clamp pushes with [N].  limits: what design may choose for it [N].
         fixed: design leaves it alone.  stiffness: of the contact [N/m].

@@ -254,20 +254,23 @@ def test_inputs_are_not_overwritten(command: Command, box: Path, tmp_path: Path)
     assert not (tmp_path / "out.yaml").exists()
 
 
-def test_ctrl_c_saves_the_best_so_far(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_stop_saves_the_best_so_far(
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+) -> None:
     told = []
 
     def interrupt(words: str, part: float) -> None:
         told.append(words)
         if len(told) == 3:  # the first way out was searched
-            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), number)
 
     monkeypatch.setattr("fixture_design.cli.design.shown", interrupt)
-    before = signal.getsignal(signal.SIGINT)
+    before = signal.getsignal(number)
     try:
         ran = command("design", saved(tmp_path, PLANAR.replace("[-1, -1]", "[0, -1]")), "-o", tmp_path / "out.yaml")
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(number, before)
     assert ran.code == 130
     assert told == ["candidates", "way out 1 of 2", "way out 2 of 2", ""]
     assert len(read_layout(tmp_path / "out.yaml").elements) == 5
@@ -280,3 +283,12 @@ def test_new_locators_have_the_tolerance_that_candidates_give(command: Command, 
     elements = json.loads(ran.out)["layout"]["elements"]
     assert {e["tolerance"] for e in elements if e["role"] == "locator"} == {2e-5}
     assert all("tolerance" not in e for e in elements if e["role"] == "clamp")
+
+
+def test_friction_that_makes_no_difference_is_told(command: Command, tmp_path: Path) -> None:
+    bare = PLANAR[: PLANAR.index("require")] if "require" in PLANAR else PLANAR
+    assert "friction: 0" not in bare
+    without = command("design", saved(tmp_path, bare), "-o", tmp_path / "out.yaml")
+    assert "makes no difference" not in without.out
+    told = command("design", saved(tmp_path, bare + "\nfriction: 0.2\n"), "-o", tmp_path / "out.yaml")
+    assert "friction 0.2 makes no difference" in told.out

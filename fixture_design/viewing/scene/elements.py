@@ -83,12 +83,12 @@ def _length(radius: float, size: float) -> float:
 
 
 def _stand(element: Element, contacts: Sequence[Contact], size: float) -> _Stand:
-    """The middle of its contacts, and the mean of their unit normals: a pin's is its axis, out of the part."""
+    """The middle of its contacts, and the mean of their unit normals; a pin stands behind its end."""
     point = np.mean([lifted(contact.point) for contact in contacts], axis=0)
     normals = [lifted(unit_normal(normal)) for contact in contacts for normal in contact.normals]
     mean = np.mean(normals, axis=0)
     if isinstance(element.tip, PinTip) and element.axis is not None:
-        return _Stand(lifted(element.at), lifted(unit_normal(element.axis)), size)
+        return _Stand(lifted(element.at), -lifted(unit_normal(element.axis)), size)
     length = float(np.linalg.norm(mean))
     return _Stand(point, mean / length if length > STEM else normals[0], size)
 
