@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from shapely.geometry import Polygon
 
 from fixture_design.design import DesignResult, Task, design
 from fixture_design.layout import Answer, Part, Pose
@@ -68,3 +69,14 @@ def test_a_moved_part_has_as_many_elements(tmp_path: Path) -> None:
     file = solid(tmp_path, trimesh.creation.box((0.1, 0.06, 0.04)), "box.stl")
     pose = Pose.from_xyz_rpy(np.array([0.3, -0.2, 0.1]), np.array([0.4, -0.3, 1.1]))
     assert counts(designed(file, 1.0, pose)) == (6, 3)
+
+
+def test_a_chamfer_of_few_digits_takes_a_clamp(tmp_path: Path) -> None:
+    """Single precision leaves its normal off by 1e-6: known well enough for a clamp, which then stands for two."""
+    outline = [(0, 0), (60, 0), (60, 25), (45, 40), (0, 40)]
+    mesh = trimesh.creation.extrude_polygon(Polygon(outline), 30)
+    result = designed(solid(tmp_path, mesh, "chamfer.stl"), MM)
+    assert counts(result) == (6, 2)
+    assert result.bound is not None
+    assert result.bound.proven
+    assert not any("left out" in note for note in result.notes if "uncertain" in note)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from fixture_design import Contact, Layout, Verdict, read_layout, verify
 from fixture_design.contacts import unit_normal, velocity
-from fixture_design.layout import Answer, Balance, LoadsHeld, Motion, Pose, StraightWays
+from fixture_design.layout import Answer, Balance, Element, LoadsHeld, Motion, PinTip, Pose, StraightWays
 from fixture_design.viewing.label_places import placed_labels
 from fixture_design.viewing.palette import ANSWER_COLORS, ROLE_COLORS, rgb
 from fixture_design.viewing.projection import Projection
@@ -28,11 +28,13 @@ from fixture_design.viewing.scene import (
     Scene,
     Sphere,
     Story,
+    Thing,
     changed_paths,
     scene_of,
     triangles_of,
 )
 from fixture_design.viewing.scene.arrows import bent_arrow
+from fixture_design.viewing.scene.elements import element_things
 from fixture_design.viewing.scene.motions import screw_pose
 from fixture_design.viewing.scene.space import Twist, lifted
 from fixture_design.viewing.scene.tessellation import extent
@@ -435,3 +437,15 @@ def test_colours_of_roles_are_told_apart_by_all_eyes(lacking: str) -> None:
     for (one, first), (other, second) in combinations(seen.items(), 2):
         assert np.linalg.norm(first - second) > 0.2, (one, other)
     assert len(set(ANSWER_COLORS.values())) == len(ANSWER_COLORS)
+
+
+@pytest.mark.parametrize("up", [1.0, -1.0])
+def test_a_pin_stands_behind_its_end(up: float) -> None:
+    """`axis` points from its foot to its end, as in the URDF."""
+    axis = np.array([0.0, 0.0, up])
+    pin = Element("P", "locator", np.zeros(3), PinTip(0.008, 2e-5, "round"), axis=axis)
+    wall = [Contact(f"P#{k + 1}", "locator", 0.004 * x, ((-x,),)) for k, x in enumerate(np.eye(3)[:2])]
+    things = [t for t in element_things(Layout("pinned", elements=(pin,)), wall, 0.05) if isinstance(t, Thing)]
+    heights = up * np.vstack([extent([thing.shape]) for thing in things])[:, 2]
+    assert heights.min() < -0.02
+    assert heights.max() < 0.02
