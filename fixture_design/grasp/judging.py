@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -83,9 +83,13 @@ def obstacle(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> str | N
     return None
 
 
-def drafted(posture: Posture, site: Site) -> Draft | str:
-    """The grasp that a hand makes where it is, or why it is none."""
-    found = touching(posture, site.part, site.geometry)
+def drafted(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> Draft | str:
+    """The grasp that a hand makes with its fingertips where it is, or why it is none.
+
+    Args:
+        tips: those that are to touch; contacts of their links count where a tip itself is no element, of others none.
+    """
+    found = _with_fingertips(touching(posture, site.part, site.geometry), {tip.link for tip in tips})
     if not (found.layout.elements or found.layout.contacts):
         return found.notes[0] if found.notes else "nothing touches"
     try:
@@ -96,12 +100,34 @@ def drafted(posture: Posture, site: Site) -> Draft | str:
     if measured.epsilon == 0:
         few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
         return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
-    X_PW = site.part.pose.inverse()
-    names = []
-    for element in found.layout.elements:
-        facets = site.surface.facets_at(site.surface.foot(X_PW.points(element.at[None])[0])[1])
+    return Draft(posture, found, contacts, _features(found, site), measured)
+
+
+def _with_fingertips(found: Touching, links: Set[str]) -> Touching:
+    """What touches, without the links that are no fingertips': near is not held, and a search is for fingertips."""
+    contacts = tuple(one for one in found.layout.contacts if found.links[one.name] in links)
+    kept = {one.name for one in (*found.layout.elements, *contacts)}
+    others = sorted({link for name, link in found.links.items() if name not in kept})
+    notes = tuple(f"{link} touches the part too, and is not counted" for link in others)
+    return replace(
+        found,
+        layout=replace(found.layout, contacts=contacts),
+        links={name: link for name, link in found.links.items() if name in kept},
+        notes=(*found.notes, *notes),
+    )
+
+
+def _features(found: Touching, site: Site) -> tuple[str, ...]:
+    """What the fingers touch: one name for each element, and for each link with contacts where their middle is."""
+    places = [element.at for element in found.layout.elements]
+    for link in dict.fromkeys(found.links[contact.name] for contact in found.layout.contacts):
+        own = [contact.point for contact in found.layout.contacts if found.links[contact.name] == link]
+        places.append(np.mean(own, axis=0))
+    X_PW, names = site.part.pose.inverse(), []
+    for place in places:
+        facets = site.surface.facets_at(site.surface.foot(X_PW.points(place[None])[0])[1])
         names.append(feature(site.geometry, int(facets[0])))
-    return Draft(posture, found, contacts, tuple(sorted(names)), measured)
+    return tuple(sorted(names))
 
 
 def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Grasp:
@@ -112,8 +138,10 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     """
     posture, layout = draft.posture, draft.touching.layout
     verdict = verify(layout, found=draft.found, sets=False)
-    touching_names = {element_name(element.name) for element in layout.elements}
-    tips = [tip for tip in posture.model.fingertips if tip.name in touching_names]
+    # a pad that lies on the part in part only is no element: its link has contacts instead
+    made = {element_name(one.name) for one in layout.elements} | {one.name for one in layout.contacts}
+    links = {draft.touching.links[name] for name in made}
+    tips = [tip for tip in posture.model.fingertips if tip.name in made or tip.link in links]
     robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
     return Grasp(
         posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,

@@ -284,8 +284,9 @@ class _Run:
     def _drafted(self, seed: Seed, q: np.ndarray, X_PH: Pose) -> Draft | str:
         """The grasp, or what is in its way, or why it is none."""
         posture = Posture(self.model, q, composed(self.site.part.pose, X_PH))
-        in_the_way = obstacle(posture, self.site, [self.model.fingertips[tip] for tip in seed.tips])
-        return drafted(posture, self.site) if in_the_way is None else in_the_way
+        tips = [self.model.fingertips[tip] for tip in seed.tips]
+        in_the_way = obstacle(posture, self.site, tips)
+        return drafted(posture, self.site, tips) if in_the_way is None else in_the_way
 
     def _result(self, drafts: list[Draft]) -> GraspResult:
         judged_ones: list[Grasp] = []
