@@ -21,10 +21,14 @@ from fixture_design.grasp.robustness import PoseError, robust_share
 from fixture_design.grasp.spots import feature
 from fixture_design.grasp.torques import Drives
 from fixture_design.grasp.touching import Touching, runs_into, touching
+from fixture_design.grasp.weakest import weakest
 from fixture_design.layout import Part, element_name
 from fixture_design.tolerances import FINGER_GAP
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
+
+#: What `obstacle` says of the table.
+INTO_TABLE = "the hand runs into the table"
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +75,20 @@ def obstacle(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> str | N
     pair = posture.model.collides_with_itself(posture.q)
     if pair is not None:
         return "the hand runs into itself"
+    if site.table is not None and lowest(posture) < site.table - FINGER_GAP:
+        return INTO_TABLE
     poses = posture.links()
-    if site.table is not None:
-        for name, link in posture.model.links.items():
-            if poses[name].points(link.geometry.vertices)[:, 2].min() < site.table - FINGER_GAP:
-                return "the hand runs into the table"
     X_PW, solid = site.part.pose.inverse(), features_of(site.geometry).solid
     for name, link in posture.model.links.items():
         if runs_into(link, composed(X_PW, poses[name]), solid, FINGER_GAP):
             return "a fingertip is in the part" if name in {tip.link for tip in tips} else f"{name} runs into the part"
     return None
+
+
+def lowest(posture: Posture) -> float:
+    """The height in W of the lowest point of a hand [m]."""
+    poses, links = posture.links(), posture.model.links
+    return min(float(poses[name].points(link.geometry.vertices)[:, 2].min()) for name, link in links.items())
 
 
 def drafted(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> Draft | str:
@@ -149,18 +157,26 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     )  # fmt: skip
 
 
-def with_strength(grasp: Grasp, load: Vector | None) -> Grasp:
-    """The grasp with what its drives hold: in the worst direction, and of a load.
+def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
+    """The grasp with what its drives do for a load.
 
     Args:
-        load: a wrench on the part about its centre of mass, shape (6,) [N, N m].
+        load: a wrench on the part about its centre of mass, shape (6,) [N, N m]; None without one.
     """
-    drives = Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
-    held = None if load is None else drives.least_effort(load)
-    notes = grasp.notes
-    if load is not None and held is None:
-        notes = (*notes, "the drives do not hold the load that was asked for")
-    return replace(grasp, weakest=drives.weakest(), held=held, notes=notes)
+    if load is None:
+        return grasp
+    held = _drives(grasp).least_effort(load)
+    notes = () if held is not None else ("the drives do not hold the load that was asked for",)
+    return replace(grasp, held=held, notes=(*grasp.notes, *notes))
+
+
+def with_weakest(grasp: Grasp) -> Grasp:
+    """The grasp with what its drives hold in the worst direction."""
+    return replace(grasp, weakest=weakest(_drives(grasp)))
+
+
+def _drives(grasp: Grasp) -> Drives:
+    return Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
 
 
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:

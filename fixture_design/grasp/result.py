@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from fixture_design.arrays import Point
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import Quality
-from fixture_design.grasp.torques import Held, Weakest
+from fixture_design.grasp.torques import Held
+from fixture_design.grasp.weakest import Weakest
 from fixture_design.layout import Answer, Layout, Verdict
 
 
