@@ -44,7 +44,8 @@ def grasps_in_words(result: GraspResult) -> Iterator[str]:
 
 def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
     on = f" on {', '.join(grasp.features)}" if grasp.features else ""
-    yield f"{number}. {grasp.posture.model.name}{on}: force closed {grasp.closed}"
+    also = f", counting {', '.join(grasp.others)} besides the fingertips" if grasp.others else ""
+    yield f"{number}. {grasp.posture.model.name}{on}: force closed {grasp.closed}{also}"
     if grasp.doubt is not None:
         yield f"   undecided: {grasp.doubt}"
     xyz = ", ".join(f"{value * 1000:.2f}" for value in grasp.posture.X_WH.translation)
@@ -55,8 +56,9 @@ def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
     yield f"   least weight {grasp.quality.least_weight:.3g}, epsilon {epsilon}{robust}"
     if grasp.weakest is not None:
         way = ", ".join(f"{value:.2f}" for value in grasp.weakest.direction)
-        force = f"{grasp.weakest.force:.3g} N" if np.isfinite(grasp.weakest.force) else "as much as the drives can do"
-        yield f"   holds {force} in the worst direction ({way})"
+        force = f"at least {grasp.weakest.force:.3g} N" if np.isfinite(grasp.weakest.force) else "as much as the drives can do"
+        alone = " by forces alone, but not all moments" if grasp.closed is Answer.NO else ""
+        yield f"   holds {force} in the worst direction ({way}){alone}"
     if grasp.held is not None:
         torques = ", ".join(f"{name} {value:.3g}" for name, value in grasp.held.torques.items())
         yield f"   holds the load with {torques} (N m, or N of joints that slide)"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,10 +21,14 @@ from fixture_design.grasp.robustness import PoseError, robust_share
 from fixture_design.grasp.spots import feature
 from fixture_design.grasp.torques import Drives
 from fixture_design.grasp.touching import Touching, runs_into, touching
+from fixture_design.grasp.weakest import weakest
 from fixture_design.layout import Part, element_name
 from fixture_design.tolerances import FINGER_GAP
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
+
+#: What `obstacle` says of the table.
+INTO_TABLE = "the hand runs into the table"
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +75,9 @@ def obstacle(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> str | N
     pair = posture.model.collides_with_itself(posture.q)
     if pair is not None:
         return "the hand runs into itself"
+    if site.table is not None and lowest(posture) < site.table - FINGER_GAP:
+        return INTO_TABLE
     poses = posture.links()
-    if site.table is not None:
-        for name, link in posture.model.links.items():
-            if poses[name].points(link.geometry.vertices)[:, 2].min() < site.table - FINGER_GAP:
-                return "the hand runs into the table"
     X_PW, solid = site.part.pose.inverse(), features_of(site.geometry).solid
     for name, link in posture.model.links.items():
         if runs_into(link, composed(X_PW, poses[name]), solid, FINGER_GAP):
@@ -83,9 +85,19 @@ def obstacle(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> str | N
     return None
 
 
-def drafted(posture: Posture, site: Site) -> Draft | str:
-    """The grasp that a hand makes where it is, or why it is none."""
-    found = touching(posture, site.part, site.geometry)
+def lowest(posture: Posture) -> float:
+    """The height in W of the lowest point of a hand [m]."""
+    poses, links = posture.links(), posture.model.links
+    return min(float(poses[name].points(link.geometry.vertices)[:, 2].min()) for name, link in links.items())
+
+
+def drafted(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> Draft | str:
+    """The grasp that a hand makes with its fingertips where it is, or why it is none.
+
+    Args:
+        tips: those that are to touch; contacts of their links count where a tip itself is no element, of others none.
+    """
+    found = _with_fingertips(touching(posture, site.part, site.geometry), {tip.link for tip in tips})
     if not (found.layout.elements or found.layout.contacts):
         return found.notes[0] if found.notes else "nothing touches"
     try:
@@ -96,12 +108,34 @@ def drafted(posture: Posture, site: Site) -> Draft | str:
     if measured.epsilon == 0:
         few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
         return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
-    X_PW = site.part.pose.inverse()
-    names = []
-    for element in found.layout.elements:
-        facets = site.surface.facets_at(site.surface.foot(X_PW.points(element.at[None])[0])[1])
+    return Draft(posture, found, contacts, _features(found, site), measured)
+
+
+def _with_fingertips(found: Touching, links: Set[str]) -> Touching:
+    """What touches, without the links that are no fingertips': near is not held, and a search is for fingertips."""
+    contacts = tuple(one for one in found.layout.contacts if found.links[one.name] in links)
+    kept = {one.name for one in (*found.layout.elements, *contacts)}
+    others = sorted({link for name, link in found.links.items() if name not in kept})
+    notes = tuple(f"{link} touches the part too, and is not counted" for link in others)
+    return replace(
+        found,
+        layout=replace(found.layout, contacts=contacts),
+        links={name: link for name, link in found.links.items() if name in kept},
+        notes=(*found.notes, *notes),
+    )
+
+
+def _features(found: Touching, site: Site) -> tuple[str, ...]:
+    """What the fingers touch: one name for each element, and for each link with contacts where their middle is."""
+    places = [element.at for element in found.layout.elements]
+    for link in dict.fromkeys(found.links[contact.name] for contact in found.layout.contacts):
+        own = [contact.point for contact in found.layout.contacts if found.links[contact.name] == link]
+        places.append(np.mean(own, axis=0))
+    X_PW, names = site.part.pose.inverse(), []
+    for place in places:
+        facets = site.surface.facets_at(site.surface.foot(X_PW.points(place[None])[0])[1])
         names.append(feature(site.geometry, int(facets[0])))
-    return Draft(posture, found, contacts, tuple(sorted(names)), measured)
+    return tuple(sorted(names))
 
 
 def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Grasp:
@@ -112,8 +146,10 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     """
     posture, layout = draft.posture, draft.touching.layout
     verdict = verify(layout, found=draft.found, sets=False)
-    touching_names = {element_name(element.name) for element in layout.elements}
-    tips = [tip for tip in posture.model.fingertips if tip.name in touching_names]
+    # a pad that lies on the part in part only is no element: its link has contacts instead
+    made = {element_name(one.name) for one in layout.elements} | {one.name for one in layout.contacts}
+    links = {draft.touching.links[name] for name in made}
+    tips = [tip for tip in posture.model.fingertips if tip.name in made or tip.link in links]
     robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
     return Grasp(
         posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
@@ -121,18 +157,26 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     )  # fmt: skip
 
 
-def with_strength(grasp: Grasp, load: Vector | None) -> Grasp:
-    """The grasp with what its drives hold: in the worst direction, and of a load.
+def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
+    """The grasp with what its drives do for a load.
 
     Args:
-        load: a wrench on the part about its centre of mass, shape (6,) [N, N m].
+        load: a wrench on the part about its centre of mass, shape (6,) [N, N m]; None without one.
     """
-    drives = Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
-    held = None if load is None else drives.least_effort(load)
-    notes = grasp.notes
-    if load is not None and held is None:
-        notes = (*notes, "the drives do not hold the load that was asked for")
-    return replace(grasp, weakest=drives.weakest(), held=held, notes=notes)
+    if load is None:
+        return grasp
+    held = _drives(grasp).least_effort(load)
+    notes = () if held is not None else ("the drives do not hold the load that was asked for",)
+    return replace(grasp, held=held, notes=(*grasp.notes, *notes))
+
+
+def with_weakest(grasp: Grasp) -> Grasp:
+    """The grasp with what its drives hold in the worst direction."""
+    return replace(grasp, weakest=weakest(_drives(grasp)))
+
+
+def _drives(grasp: Grasp) -> Drives:
+    return Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
 
 
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:

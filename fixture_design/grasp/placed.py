@@ -12,7 +12,7 @@ from dataclasses import replace
 from fixture_design.arrays import Vector
 from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry import PartGeometry
-from fixture_design.grasp.judging import Draft, Site, judged, with_strength
+from fixture_design.grasp.judging import Draft, Site, judged, with_load, with_weakest
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import quality
 from fixture_design.grasp.result import Grasp, GraspResult
@@ -69,7 +69,7 @@ def _grasp(posture: Posture, site: Site, found: Touching, load: Vector | None) -
     measured = quality(contacts.contacts, contacts.report.reference, contacts.report.length)
     inside = tuple(_inside(name, depth) for name, depth in found.overlaps.items())
     draft = Draft(posture, replace(found, notes=(*found.notes, *inside)), contacts, (), measured)
-    return with_strength(judged(draft, site, PoseError(), 0), load)
+    return with_weakest(with_load(judged(draft, site, PoseError(), 0), load))
 
 
 def _inside(name: str, depth: float) -> str:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from fixture_design.arrays import Point
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import Quality
-from fixture_design.grasp.torques import Held, Weakest
+from fixture_design.grasp.torques import Held
+from fixture_design.grasp.weakest import Weakest
 from fixture_design.layout import Answer, Layout, Verdict
 
 
@@ -46,8 +47,21 @@ class Grasp:
     @property
     def doubt(self) -> str | None:
         """Why that is undecided, where it is and the verdict says so."""
-        findings = (found for group in self.verdict.groups.values() for found in group.findings.values())
-        return next((found.reason for found in findings if found.answer is Answer.UNDECIDED and found.reason), None)
+        if self.closed is not Answer.UNDECIDED:
+            return None
+        # other findings of the verdict may be undecided without that anybody asked for them
+        asked = [
+            self.verdict.groups[one.group].findings[one.require]
+            for one in self.verdict.requirements
+            if one.answer is not Answer.YES
+        ]
+        return next((found.reason for found in asked if found.reason), None)
+
+    @property
+    def others(self) -> tuple[str, ...]:
+        """Links that count among what touches, though no fingertip is theirs."""
+        of_tips = {tip.link for tip in self.posture.model.fingertips}
+        return tuple(sorted(set(self.links.values()) - of_tips))
 
 
 @dataclass(frozen=True, eq=False)

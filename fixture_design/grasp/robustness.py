@@ -1,14 +1,15 @@
 """How well a grasp stands errors of the part's pose: in which share of them the fingers still close.
 
 The part is moved a little at random while the hand stays; every fingertip then gives way along its normal, until it
-touches what is nearest. Of pads the corners are looked at, which give way to a small tilt. Closed is what
-`design` calls so while it searches: rows of the friction cones' edges that close.
+touches what is nearest. Of pads, which give way to a small tilt, the corners are looked at, or a grid where they
+overhang. Closed is what `design` calls so while it searches: rows of the friction cones' edges that close.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from jaxtyping import Float
@@ -28,6 +29,9 @@ POSES = 32
 
 #: Corners of a pad that count: a little inside of it [-].
 _CORNER = 0.4
+
+#: Where a pad is looked at that overhangs the part: these parts of the way to its corners [-].
+_GRID = (-1.0, -0.6, -0.2, 0.2, 0.6, 1.0)
 
 #: A pad gives way to a tilt up to this [rad], everything gives way up to this much besides the error itself [m].
 _TILT, _GIVES = 0.15, 2e-3
@@ -68,15 +72,23 @@ def _small(shift: Float[np.ndarray, 3], turn: Float[np.ndarray, 3], center: Floa
 def _given_way(tip: Fingertip, X_PL: Pose, surface: SolidSurface, posture: Posture, error: PoseError) -> list[Contact]:
     """The contacts of a fingertip that gives way until it touches; in P.
 
-    A pad has as many as it has corners on the surface, and in its middle one with the patch of its skin where these
-    are fewer than three.
+    A pad has as many as it has corners on the surface; where these are fewer than three, as it overhangs, as many as
+    it has points of a grid there, and in its middle one with the patch of its skin.
     """
     if tip.pad is None:
         return _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
-    signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))
-    corners = [_CORNER * (u * tip.pad[0] * tip.sideways + v * tip.pad[1] * tip.across) for u, v in signs]
-    found = _contacts_at(tip, corners, X_PL, surface, posture, error)
-    return found if len(found) >= 3 else found + _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
+    found = _contacts_at(tip, _on_pad(tip, (-1.0, 1.0)), X_PL, surface, posture, error)
+    if len(found) >= 3:
+        return found
+    grid = _contacts_at(tip, _on_pad(tip, _GRID), X_PL, surface, posture, error)
+    return grid + _contacts_at(tip, [np.zeros(3)], X_PL, surface, posture, error)
+
+
+def _on_pad(tip: Fingertip, steps: Sequence[float]) -> list[Float[np.ndarray, 3]]:
+    """Points of a pad from its middle, at these parts of the way to its corners' both ways."""
+    assert tip.pad is not None
+    wide, high = _CORNER * tip.pad[0] * tip.sideways, _CORNER * tip.pad[1] * tip.across
+    return [u * wide + v * high for u, v in product(steps, repeat=2)]
 
 
 def _contacts_at(

@@ -1,16 +1,15 @@
 """The search for grasps: where fingers may go, how the hand gets there, what it runs into, and what is best.
 
-Sets of points of the part that close are proposed (`spots`), the hand's configurations that fit them best are looked up
-(`library`), inverse kinematics makes the fingers touch (`reach`), and what runs into nothing is judged (`judging`).
-Features of the part take turns, so that what is found differs; of each family, the fingers on the same features, the
-best stays.
+Sets of points of the part that close are proposed (`spots`, `wanted`), the hand's configurations that fit them best are
+looked up (`library`), inverse kinematics makes the fingers touch (`reach`, `attempts`), and what runs into nothing is
+judged (`judging`). Of each family, the fingers on the same features, the best stays (`finds`).
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from itertools import islice
 
 import numpy as np
 
@@ -18,47 +17,28 @@ from fixture_design.arrays import Vector
 from fixture_design.contacts import Scale
 from fixture_design.errors import InputError, UnsupportedError
 from fixture_design.geometry import PartGeometry, SurfacePoints, load_part
-from fixture_design.geometry.urdf_tree import composed
+from fixture_design.grasp.attempts import DRAFTS, NOT_REACHED, Attempts
+from fixture_design.grasp.finds import Finds, reason_of
 from fixture_design.grasp.hand import Hand
 from fixture_design.grasp.hand_loading import load_hand
 from fixture_design.grasp.hand_model import HandModel
-from fixture_design.grasp.judging import Draft, Site, better_first, drafted, judged, obstacle, with_strength
-from fixture_design.grasp.library import Library, Seed, Spots
-from fixture_design.grasp.posture import Posture
+from fixture_design.grasp.judging import Site
+from fixture_design.grasp.library import Library
 from fixture_design.grasp.reach import Reach
-from fixture_design.grasp.result import FacingRegion, Grasp, GraspResult
+from fixture_design.grasp.result import FacingRegion, GraspResult
 from fixture_design.grasp.robustness import PoseError
-from fixture_design.grasp.rolling import rolled
-from fixture_design.grasp.skin import Skin
-from fixture_design.grasp.spots import (
-    Region,
-    antipodal,
-    closing_sets,
-    feature,
-    opposite,
-    regions_of,
-    spots_at,
-    spread,
-)
-from fixture_design.layout import Answer, Part, Pose
+from fixture_design.grasp.spots import Region, antipodal, closing_sets, opposite, regions_of, spread
+from fixture_design.grasp.wanted import Progress, Wanted, fitting, in_turns
+from fixture_design.layout import Answer, Part
 
-#: Words and how much is done, 0 to 1.
-Progress = Callable[[str, float], None]
+#: Sets of points tried at most.
+TRIES = 160
 
-#: Sets of points tried at most; drafts made of one family, and those of them that are judged.
-TRIES, DRAFTS, JUDGED = 160, 3, 2
+#: Sets whose seeds are looked up.
+_SETS = 1500
 
-#: Failures in a row after which a family is given up.
-PATIENCE = 24
-
-#: Seeds tried for one pair of points, and those that fit best from which they are taken.
-_SEEDS, _ALIKE = 6, 48
-
-#: Sets whose seeds are looked up, so many each; and those of all seeds that are compared by what runs into the part.
-_SETS, _LOOKED_UP, _COMPARED = 1500, 4, 600
-
-#: Sets that miss by more than this before inverse kinematics are not tried [m].
-_TOO_FAR = 0.03
+#: What a region is called by the best verdict there.
+_CALLED = {Answer.YES: "closed", Answer.UNDECIDED: "undecided", Answer.NO: "not closed"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,15 +74,6 @@ class Search:
         if self.load is not None and (np.shape(self.load) != (6,) or not np.isfinite(self.load).all()):
             expected = "six finite numbers: force [N] and moment [N m]"
             raise InputError("'load' is no wrench", found=str(self.load), expected=expected)
-
-
-@dataclass(frozen=True, eq=False)
-class _Wanted:
-    """A set of spots to be reached, the features they are on, and seeds, where they were looked up already."""
-
-    spots: Spots
-    features: tuple[str, ...]
-    seeds: tuple[Seed, ...] = ()
 
 
 def check_kinds(hand: object, part: object) -> None:
@@ -152,7 +123,7 @@ def grasp(
 
 
 class _Run:
-    """One search, and what became of its tries."""
+    """One search: what is wanted of two or three fingertips, what is reached of it, and what that is worth."""
 
     def __init__(
         self, model: HandModel, site: Site, search: Search, progress: Progress, cancelled: Callable[[], bool]
@@ -160,37 +131,31 @@ class _Run:
         self.model, self.site, self.search = model, site, search
         self.progress, self.cancelled = progress, cancelled
         self.rng = np.random.default_rng(search.seed)
-        self.outcomes: Counter[str] = Counter()
-        self.answers: dict[tuple[str, ...], Answer] = {}
         self.points = spread(site.geometry, search.seed)
-        self.reach = Reach.of(model)
         self.friction = min(model.hand.friction if tip.friction is None else tip.friction for tip in model.fingertips)
+        self.attempts = Attempts(model, site, Reach.of(model), self.rng, search.tries, progress, cancelled)
+        self.finds = Finds(site, search.error, search.seed, search.load, progress)
 
     def with_sets(self) -> GraspResult:
         """Three fingertips at a time; if that gives nothing, two."""
         library = Library.of(self.model, 3, self.rng)
         scale = Scale(self.site.geometry.box_center, self.site.geometry.half_diagonal)
         thick = 2 * max(tip.radius for tip in self.model.fingertips)
-        sets, _ = closing_sets(self.points, scale, self.friction, 3, (thick, library.widest + thick), self.rng)
-        drafts = self._tried(library, self._fitting(library, sets[:_SETS]))
-        return self._result(drafts) if drafts else self.with_pairs()
 
-    def _fitting(self, library: Library, sets: np.ndarray) -> list[_Wanted]:
-        """Sets of points with the seeds that fit, first those that miss least with least of the hand in the part."""
-        fits = []
-        for number, chosen in enumerate(sets):
-            seeds = library.seeds(spots_at(self.points, chosen), _LOOKED_UP)
-            fits += [(seed.off, number, seed) for seed in seeds if seed.off <= _TOO_FAR]
-        fits.sort(key=lambda fit: fit[:2])
-        if not fits:
-            self.outcomes["no three points that close are within reach"] += 1
-        skin = Skin.of(self.model)
-        ranked = []
-        for done, (off, number, seed) in enumerate(fits[:_COMPARED]):
-            self.progress("looking for ways to reach around the part", done / min(len(fits), _COMPARED))
-            ranked.append((off + skin.depth(seed, self.site.geometry), number, seed))
-        ranked.sort(key=lambda fit: fit[:2])
-        return [replace(self._wanted(self.points, sets[number]), seeds=(seed,)) for _, number, seed in ranked]
+        def closing(widest: float) -> np.ndarray:
+            return closing_sets(self.points, scale, self.friction, 3, (thick, widest), self.rng)[0]
+
+        sets = closing(library.widest + thick)[:_SETS]
+        wanted = fitting(library, self.site.geometry, self.points, sets, self.progress, self.cancelled)
+        if not wanted:
+            anywhere = len(sets) > 0 or len(closing(np.inf)) > 0
+            self.attempts.outcomes[
+                "no three points that close are within reach"
+                if anywhere
+                else f"no three points of the part that were looked at close with friction {self.friction:g}"
+            ] += 1
+        self._look(library, wanted)
+        return self._result() if self.finds.best else self.with_pairs()
 
     def with_pairs(self) -> GraspResult:
         """Two fingertips on all antipodal regions, in turns."""
@@ -201,139 +166,71 @@ class _Run:
         regions = regions_of(self.site.geometry, points, pairs)
         if not regions:
             what = "parallel faces opposite each other" if flat else "faces within each other's friction cones"
-            return GraspResult(Answer.UNDECIDED, (), (), {}, f"the part has no {what}", self.model.notes)
-        middle = self.site.geometry.box_center
-        wanted: list[list[_Wanted]] = []
-        narrow = []
-        for region in regions:
-            fits = region.pairs[region.widths <= library.widest]
-            narrow += [region] if not len(fits) else []
-            off = np.linalg.norm((points.points[fits[:, 0]] + points.points[fits[:, 1]]) / 2 - middle, axis=1)
-            wanted.append([self._wanted(points, fits[number]) for number in np.argsort(off, kind="stable")])
-        if len(narrow) == len(regions):
+            self.attempts.outcomes[f"the part has no {what}"] += 1
+            return self._result()
+        wanted = [self._of_region(points, region, library.widest) for region in regions]
+        facing = [_outcome(region, "too wide") for region in regions]
+        if not any(wanted):
             least, most = min(r.widths.min() for r in regions), library.widest
             reason = f"the part is {least * 1000:.3g} mm wide at least, and the hand opens to {most * 1000:.3g} mm"
-            facing = tuple(_outcome(region, {}, "too wide") for region in regions)
-            return GraspResult(Answer.UNDECIDED, (), facing, {}, reason, self.model.notes)
-        drafts = self._tried(library, _in_turns(wanted))
-        result = self._result(drafts)
-        done = {
-            features: "closed" if answer is Answer.YES else str(answer) for features, answer in self.answers.items()
-        }
-        narrow_ones = {region.features for region in narrow}
-        facing = tuple(
-            _outcome(region, done, "too wide" if region.features in narrow_ones else "not reached")
-            for region in regions
-        )
-        return GraspResult(result.satisfied, result.grasps, facing, result.tried, result.reason, result.notes)
+            return replace(self._result(), regions=tuple(facing), reason=reason)
+        self._look(library, in_turns(wanted))
+        facing = [
+            _outcome(region, self._became(region.features)) if some else there
+            for region, some, there in zip(regions, wanted, facing, strict=True)
+        ]
+        return replace(self._result(), regions=tuple(facing))
 
-    def _wanted(self, points: SurfacePoints, chosen: np.ndarray) -> _Wanted:
-        names = tuple(sorted(feature(self.site.geometry, int(points.facets[number])) for number in chosen))
-        return _Wanted(spots_at(points, chosen), names)
+    def _of_region(self, points: SurfacePoints, region: Region, widest: float) -> list[Wanted]:
+        """Pairs of a region that are not too wide, those about the part's middle first."""
+        fits = region.pairs[region.widths <= widest]
+        middles = (points.points[fits[:, 0]] + points.points[fits[:, 1]]) / 2
+        off = np.linalg.norm(middles - self.site.geometry.box_center, axis=1)
+        return [Wanted.of(self.site.geometry, points, fits[number]) for number in np.argsort(off, kind="stable")]
 
-    def _tried(self, library: Library, wanted: Iterable[_Wanted]) -> list[Draft]:
-        """Drafts of what is reached, until there are enough, or enough was tried."""
-        drafts: list[Draft] = []
-        families: Counter[tuple[str, ...]] = Counter()
-        failures: Counter[tuple[str, ...]] = Counter()
-        for number, one in enumerate(wanted):
-            if number >= self.search.tries or self.cancelled():
-                break
-            if families[one.features] >= DRAFTS or failures[one.features] >= PATIENCE:
-                continue
-            if len(drafts) >= DRAFTS * self.search.most:
-                break
-            share = number / self.search.tries
-            self.progress(f"{len(drafts)} grasps; trying {', '.join(one.features)}", share)
-            draft = self._first(one, ((seed,) for seed in one.seeds) if one.seeds else self._ways(library, one.spots))
-            if draft is not None:
-                drafts.append(draft)
-                families[one.features] += 1
-                failures[one.features] = 0
-            else:
-                failures[one.features] += 1
-        return drafts
+    def _look(self, library: Library, wanted: Iterable[Wanted]) -> None:
+        """Drafts are made and judged until there are as many grasps as are wanted, or enough was tried.
 
-    def _ways(self, library: Library, spots: Spots) -> Iterator[Iterable[Seed]]:
-        """Configurations that fit two spots, each with ways round the line between them."""
-        if len(self.model.free) == 1:  # one way to be as wide as that
-            seeds = library.seeds(spots, 1)
-        else:
-            seeds = library.seeds(spots, _ALIKE)
-            # which ones differs from pair to pair: those of two parallel faces all have the same nearest ones
-            seeds = [seeds[number] for number in np.sort(self.rng.choice(len(seeds), min(_SEEDS, len(seeds)), False))]
-        for seed in seeds:
-            yield rolled(seed, spots, self.rng)
+        What turns out undecided, or not to hold the load, does not count, and its family is tried again.
+        """
+        drafts = self.attempts.drafts(library, wanted)
+        while more := list(islice(drafts, DRAFTS * (self.search.most - len(self.finds.good)))):
+            self.finds.judge(more)
+            for features in self.finds.best:
+                if features not in self.finds.good:
+                    del self.attempts.full[features]
+            if len(self.finds.good) >= self.search.most:
+                return
 
-    def _first(self, wanted: _Wanted, ways: Iterable[Iterable[Seed]]) -> Draft | None:
-        """The first seed that leads to a grasp; of a way that cannot be solved the others are the same but turned."""
-        outcome = "nothing reaches there"
-        for way in ways:
-            for seed in way:
-                found = self.reach.solve(wanted.spots, seed)
-                if found is None:
-                    break
-                draft = self._drafted(seed, *found)
-                if isinstance(draft, Draft):
-                    self.outcomes["closed"] += 1
-                    return draft
-                outcome = draft
-        self.outcomes[outcome] += 1
-        return None
+    def _became(self, features: tuple[str, str]) -> str:
+        """What became of a region."""
+        if features in self.finds.best:
+            return _CALLED[self.finds.best[features].closed]
+        failed = self.attempts.by_features.get(features)
+        if failed is None:
+            return "not tried"
+        (words, _), *_ = failed.most_common(1)
+        return "not reached" if words == NOT_REACHED else words
 
-    def _drafted(self, seed: Seed, q: np.ndarray, X_PH: Pose) -> Draft | str:
-        """The grasp, or what is in its way, or why it is none."""
-        posture = Posture(self.model, q, composed(self.site.part.pose, X_PH))
-        in_the_way = obstacle(posture, self.site, [self.model.fingertips[tip] for tip in seed.tips])
-        return drafted(posture, self.site) if in_the_way is None else in_the_way
+    def _result(self) -> GraspResult:
+        stopped = self.attempts.stopped
+        grasps = self.finds.grasps(self.search.most)
+        tried = dict(self.attempts.outcomes.most_common())
+        if self.finds.good:
+            notes = ("the search was stopped before all was tried",) if stopped else ()
+            return GraspResult(Answer.YES, grasps, (), tried, None, (*self._notes, *notes))
+        reason = self.finds.reason or reason_of(self.attempts.outcomes)
+        reason = f"the search was stopped before all was tried; {reason}" if stopped else reason
+        return GraspResult(Answer.UNDECIDED, grasps, (), tried, reason, self._notes)
 
-    def _result(self, drafts: list[Draft]) -> GraspResult:
-        judged_ones: list[Grasp] = []
-        chosen = _best_of_each(drafts)
-        for number, draft in enumerate(chosen):
-            self.progress("judging what was found", number / len(chosen))
-            judged_ones.append(judged(draft, self.site, self.search.error, self.search.seed))
-        best: dict[tuple[str, ...], Grasp] = {}
-        for one in better_first(judged_ones):
-            best.setdefault(one.features, one)
-        self.answers = {features: one.closed for features, one in best.items()}
-        grasps = tuple(with_strength(one, self.search.load) for one in list(best.values())[: self.search.most])
-        tried = dict(self.outcomes.most_common())
-        holding = [g for g in grasps if g.closed is Answer.YES and (self.search.load is None or g.held is not None)]
-        if holding:
-            return GraspResult(Answer.YES, (*holding, *(g for g in grasps if g not in holding)), (), tried, None,
-                               self.model.notes)  # fmt: skip
-        return GraspResult(Answer.UNDECIDED, grasps, (), tried, self._reason(grasps), self.model.notes)
-
-    def _reason(self, grasps: tuple[Grasp, ...]) -> str:
-        if grasps and self.search.load is not None:
-            return "no grasp that was found holds the load"
-        if grasps:
-            return "the verdicts of all grasps that were found are undecided"
-        if not self.outcomes:
-            return "nothing was within reach"
-        told = "; ".join(f"{words} ({count})" for words, count in self.outcomes.most_common(4))
-        return f"no grasp was found: {told}"
+    @property
+    def _notes(self) -> tuple[str, ...]:
+        return (*self.model.notes, *self.site.geometry.notes)
 
 
-def _best_of_each(drafts: list[Draft]) -> list[Draft]:
-    """The drafts of each family that are best by epsilon, or where it is not known by least weight."""
-
-    def worth(draft: Draft) -> float:
-        return draft.quality.least_weight if draft.quality.epsilon is None else draft.quality.epsilon
-
-    families: dict[tuple[str, ...], list[Draft]] = {}
-    for draft in sorted(drafts, key=worth, reverse=True):
-        families.setdefault(draft.features, []).append(draft)
-    return [draft for family in families.values() for draft in family[:JUDGED]]
+def _outcome(region: Region, outcome: str) -> FacingRegion:
+    return FacingRegion(region.features, len(region.pairs), _width(region), outcome)
 
 
-def _in_turns(lists: list[list[_Wanted]]) -> Iterator[_Wanted]:
-    """One of each list, then the second of each, and so on."""
-    for number in range(max(map(len, lists), default=0)):
-        yield from (one[number] for one in lists if number < len(one))
-
-
-def _outcome(region: Region, done: dict[tuple[str, ...], str], otherwise: str) -> FacingRegion:
-    width = float(region.widths.min()), float(region.widths.max())
-    return FacingRegion(region.features, len(region.pairs), width, done.get(region.features, otherwise))
+def _width(region: Region) -> tuple[float, float]:
+    return float(region.widths.min()), float(region.widths.max())

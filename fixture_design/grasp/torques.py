@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 from jaxtyping import Float
@@ -33,25 +32,13 @@ class Held:
         factor: of the load that was asked for; inf where nothing limits it.
         torques: by joint that moves on its own [N m or N]; of the load, or of ``factor`` times it.
         forces: by element or contact, the force on the part at each contact point, summed, shape (3,) [N].
+        moments: of soft tips, the moment on the part beside that force, at the contact point, shape (3,) [N m].
     """
 
     factor: float
     torques: Mapping[str, float]
     forces: Mapping[str, Point]
-
-
-@dataclass(frozen=True, eq=False)
-class Weakest:
-    """The direction in which a force through a point is held worst.
-
-    Attributes:
-        force: the largest one held in that direction [N]; inf where drives without a limit hold anything, 0 where there
-            is a direction without any.
-        direction: unit, of the 26 towards faces, edges and corners of a cube.
-    """
-
-    force: float
-    direction: Point
+    moments: Mapping[str, Point]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +84,7 @@ class Drives:
         if found is None:
             return None
         if not bounded:
-            return Held(np.inf, {}, {})
+            return Held(np.inf, {}, {}, {})
         return self._held(float(found[-1]), found[:-1])
 
     def least_effort(self, load: Vector) -> Held | None:
@@ -149,19 +136,26 @@ class Drives:
             return None
         return self.torques @ found.x[:-1]
 
-    def weakest(self) -> Weakest:
-        """The direction of the 26 in which a force through the reference is held worst."""
-        worst = Weakest(np.inf, np.array([0.0, 0.0, -1.0]))
-        for corner in product((-1.0, 0.0, 1.0), repeat=3):
-            direction = np.array(corner)
-            if not direction.any():
-                continue
-            direction = direction / np.linalg.norm(direction)
-            held = self.largest(np.append(direction, np.zeros(3)))
-            force = 0.0 if held is None else held.factor
-            if force < worst.force:
-                worst = Weakest(force, direction)
-        return worst
+    def farthest(self, direction: Point, most: float) -> Point:
+        """Of the forces through the reference that are held, one that goes furthest along a direction, shape (3,) [N].
+
+        Args:
+            most: no coordinate is looked at beyond this [N].
+        """
+        from scipy.optimize import linprog
+
+        if not len(self.pushes.owners):
+            return np.zeros(3)
+        limited = np.isfinite(self.limits)
+        # the contacts push the part with the opposite of the force that they hold
+        forces, rows = -self.pushes.forces.T, self.torques[limited]
+        upper = np.vstack([rows, -rows, forces, -forces])
+        sides = np.concatenate([np.tile(self.limits[limited], 2), np.full(6, most)])
+        moments = self.pushes.wrenches[:, 3:].T
+        found = linprog(
+            -direction @ forces, upper, sides, moments, np.zeros(3), bounds=(0, None), method="highs"
+        )  # no push at all is allowed, and no coordinate without a bound
+        return np.zeros(3) if found.x is None else forces @ found.x
 
     def _solve(self, cost: Weights, equalities: np.ndarray, sides: Weights) -> tuple[Weights | None, bool]:
         """The solution, and whether it is bounded."""
@@ -180,7 +174,15 @@ class Drives:
 
     def _held(self, factor: float, x: Weights) -> Held:
         torques = dict(zip(self.names, (self.torques @ x).tolist(), strict=True))
-        forces: dict[str, Point] = {}
-        for owner, force in zip(self.pushes.owners, self.pushes.forces * x[:, None], strict=True):
-            forces[owner] = forces.get(owner, np.zeros(3)) + force
-        return Held(factor, torques, forces)
+        pushes = self.pushes
+        soft = {owner for owner, moment in zip(pushes.owners, pushes.moments, strict=True) if moment.any()}
+        moments = _summed(pushes.owners, pushes.moments * x[:, None])
+        spins = {owner: moment for owner, moment in moments.items() if owner in soft}
+        return Held(factor, torques, _summed(pushes.owners, pushes.forces * x[:, None]), spins)
+
+
+def _summed(owners: Sequence[str], vectors: Float[np.ndarray, "m 3"]) -> dict[str, Point]:
+    sums: dict[str, Point] = {}
+    for owner, vector in zip(owners, vectors, strict=True):
+        sums[owner] = sums.get(owner, np.zeros(3)) + vector
+    return sums

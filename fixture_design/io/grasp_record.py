@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from fixture_design.grasp.result import FacingRegion, Grasp, GraspResult
-from fixture_design.grasp.torques import Held, Weakest
+from fixture_design.grasp.torques import Held
+from fixture_design.grasp.weakest import Weakest
 from fixture_design.io.layout_writing import layout_data
 from fixture_design.io.pose_angles import roll_pitch_yaw
 from fixture_design.io.verdict_record import verdict_to_dict
@@ -67,7 +68,8 @@ def _weakest(weakest: Weakest) -> Data:
 
 def _held(held: Held) -> Data:
     forces = {name: _numbers(force) for name, force in held.forces.items()}
-    return {"factor": _bounded(held.factor), "torques": dict(held.torques), "forces": forces}
+    moments = {name: _numbers(moment) for name, moment in held.moments.items()}
+    return {"factor": _bounded(held.factor), "torques": dict(held.torques), "forces": forces, "moments": moments}
 
 
 def _bounded(value: float) -> float | None:

@@ -36,6 +36,8 @@ SHAPES = {
     "cube": '<box size="0.06 0.06 0.06"/>',
     "cylinder": '<cylinder radius="0.02" length="0.08"/>',
     "sphere": '<sphere radius="0.03"/>',
+    "small": '<box size="0.03 0.03 0.03"/>',
+    "flat": '<box size="0.06 0.04 0.012"/>',
     "large": '<box size="0.15 0.15 0.15"/>',
 }
 
