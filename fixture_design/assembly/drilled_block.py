@@ -14,7 +14,8 @@ from fixture_design.assembly.turned_body import COAXIAL, ONE_CIRCLE
 from fixture_design.layout import Pose
 
 if TYPE_CHECKING:
-    from fixture_design.geometry import PartGeometry, SmoothSurface
+    from fixture_design.geometry import PartGeometry
+    from fixture_design.geometry.smooth_surface import SmoothSurface
 
 #: Share of the volume that rounding of a mesh may be [-], and how far off the plane of a facet its corners.
 _SAME_VOLUME, _ON_PLANE = 1e-2, 1e-6

@@ -32,31 +32,33 @@ def round_bodies(assembly: Assembly) -> tuple[TurnedBody, tuple[DrilledBlock, ..
     """
     bodies = [assembly.moving, *assembly.fixed]
     parts = [None if body.box is not None else part_of(body) for body in bodies]
-    if not any(part is not None and _is_round(part) for part in parts):
+    if not any(part is not None and is_round(part) for part in parts):
         return None
     found = [_recognised(body, part, k == 0) for k, (body, part) in enumerate(zip(bodies, parts, strict=True))]
     reasons = [(part, word) for part, word in zip(parts, found, strict=True) if isinstance(word, str)]
     if reasons:
         if all(part is None or strips(part) <= MOST_STRIPS for part in parts):
             return None
-        raise _refused([part for part in parts if part is not None and _is_round(part)], reasons)
+        raise _refused([part for part in parts if part is not None and is_round(part)], reasons)
     moving, *fixed = found
     assert isinstance(moving, TurnedBody)
     return moving, tuple(block for block in fixed if isinstance(block, DrilledBlock))
 
 
-def _is_round(part: PartGeometry) -> bool:
+def is_round(part: PartGeometry) -> bool:
+    """Whether some surface is round for sure: of so many facets that no prism is meant."""
     return any(len(surface.facets) >= FEWEST_AROUND for surface in part.smooth_surfaces)
 
 
 def _recognised(body: AssemblyBody, part: PartGeometry | None, moves: bool) -> TurnedBody | DrilledBlock | str:
     pose = body.pose or Pose.identity(3)
     if part is None:
+        assert body.box is not None
         if moves:
             return "the moving body is a box"
         points = (np.array(list(np.ndindex(2, 2, 2)), dtype=np.float64) - 0.5) * body.box
         return DrilledBlock.solid(Polytope.hull_of(pose.points(points)))
-    if moves and not _is_round(part):
+    if moves and not is_round(part):
         return "the moving body is not round"
     return turned_body(part, pose) if moves else drilled_block(part, pose)
 

@@ -25,11 +25,17 @@ AGAIN = " again"
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """The turned body at n configurations: its axis and the point of it that is nearest to its frame's origin."""
+    """The turned body at n configurations.
+
+    Attributes:
+        R, position: of its frame, shapes (n, 3, 3) and (n, 3).
+        slides: whether `Touch.slide` is wanted, which takes time.
+    """
 
     body: TurnedBody
     R: np.ndarray
     position: np.ndarray
+    slides: bool = False
 
     @cached_property
     def axis(self) -> np.ndarray:
@@ -37,7 +43,7 @@ class Placement:
 
     def of(self, rows: np.ndarray) -> Placement:
         """Some of the placements."""
-        return Placement(self.body, self.R[rows], self.position[rows])
+        return Placement(self.body, self.R[rows], self.position[rows], self.slides)
 
     @property
     def origin(self) -> np.ndarray:
@@ -130,7 +136,9 @@ class _Names:
                     self.rims[b, h, k] = f"circle {circle}"
 
 
-def _with_facets(moving: TurnedBody, block: DrilledBlock, number: int, boxes: Points, names: _Names) -> list[RoundPair]:
+def _with_facets(
+    moving: TurnedBody, block: DrilledBlock, number: int, boxes: np.ndarray, names: _Names
+) -> list[RoundPair]:
     pairs = []
     for facet in range(len(block.normals)):
         ring = block.hull.vertices[block.hull.corners[facet]]
@@ -239,7 +247,9 @@ def _on_plane(
     return pairs
 
 
-def _with_hole(moving: TurnedBody, hole: Hole, which: tuple[int, int], boxes: Points, names: _Names) -> list[RoundPair]:
+def _with_hole(
+    moving: TurnedBody, hole: Hole, which: tuple[int, int], boxes: np.ndarray, names: _Names
+) -> list[RoundPair]:
     number = which[0]
     wall = Cones(
         (hole.point + hole.low * hole.axis)[None], hole.axis[None], hole.radius, (0.0, 1.0), hole.high - hole.low
@@ -275,7 +285,7 @@ def _with_rim(
     moving: TurnedBody,
     rim: Circles,
     which: tuple[int, int, int],
-    boxes: Points,
+    boxes: np.ndarray,
     names: _Names,
     beside: tuple[str, str],
 ) -> list[RoundPair]:
@@ -287,7 +297,7 @@ def _with_rim(
         wedge = _wedge(moving, k)
 
         def cross(place: Placement, k: int = k, wedge: tuple = wedge) -> tuple[Touch, ...]:
-            return round_touch.crossing(place.circle(k), _repeated(rim, len(place.R)), wedge)
+            return round_touch.crossing(place.circle(k), _repeated(rim, len(place.R)), wedge, place.slides)
 
         joins = [f"{names.circles[k]} - {other}" for other in beside]
         joins += [f"{surface} - {names.rims[which]}" for surface in names.surfaces[max(k - 1, 0) : k + 1]]
@@ -316,7 +326,7 @@ def _wedge(moving: TurnedBody, k: int) -> tuple[np.ndarray, np.ndarray]:
     return below, above
 
 
-def _boxes(moving: TurnedBody, region: Region) -> Points:
+def _boxes(moving: TurnedBody, region: Region) -> np.ndarray:
     """Boxes in W that the points of each circle cannot leave, shape (k, 2, 3): low and high corners."""
     return np.array(
         [_box(center, radius, moving, region) for center, radius in zip(moving.centers, moving.radii, strict=True)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,7 @@ from fixture_design.assembly.assembly import Assembly, Region
 from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.drilled_block import DrilledBlock
 from fixture_design.assembly.pair_equations import PairEquations
-from fixture_design.assembly.round_features import Placement, RoundPair, pairs_of
+from fixture_design.assembly.round_features import Flat, Placement, RoundPair, pairs_of
 from fixture_design.assembly.round_overlap import overlap_with
 from fixture_design.assembly.round_touch import Touch, crossed
 from fixture_design.assembly.spatial_motions import SpatialMotions
@@ -60,8 +60,12 @@ class RoundGeometry(SpatialMotions):
         free = np.array([True] * 3 + [region.turning != "fixed"] * 3)
         return cls(moving, fixed, pairs, region, size, moving.spread, free)
 
-    @cached_property
+    @property
     def names(self) -> tuple[str, ...]:
+        return self._names
+
+    @cached_property
+    def _names(self) -> tuple[str, ...]:
         return tuple(name for pair in self.pairs for name in pair.names)
 
     @property
@@ -71,7 +75,8 @@ class RoundGeometry(SpatialMotions):
     def possible_together(self) -> np.ndarray:
         return np.ones((len(self.names), len(self.names)), dtype=bool)
 
-    def _place(self, q: np.ndarray) -> Placement:
+    def place(self, q: np.ndarray) -> Placement:
+        """The moving body at configurations."""
         return Placement(self.moving, rotations.matrices(q[:, 3:]), q[:, :3])
 
     def _touches(self, place: Placement) -> list[Touch]:
@@ -83,8 +88,13 @@ class RoundGeometry(SpatialMotions):
         """For each name the pair if it is that of a disk on a plane."""
         return [pair if pair.flat is not None else None for pair in self.pairs for _ in pair.names]
 
+    def flat(self, number: int) -> Flat | None:
+        """What a pair has if it is a disk on a plane."""
+        pair = self._flats[number]
+        return None if pair is None else pair.flat
+
     def distances(self, q: np.ndarray) -> np.ndarray:
-        place = self._place(q)
+        place = self.place(q)
         columns = []
         for touch, pair in zip(self._touches(place), self._flats, strict=True):
             parts = [touch.gap, np.maximum(touch.beyond, 0.0)]
@@ -113,7 +123,7 @@ class RoundGeometry(SpatialMotions):
 
     def _equations(self, q: np.ndarray, chosen: np.ndarray, joined: bool) -> PairEquations:
         chosen = np.broadcast_to(chosen, (len(q), chosen.shape[1]))
-        place, count = self._place(q), len(self.names)
+        place, count = replace(self.place(q), slides=True), len(self.names)
         values = np.zeros((*chosen.shape, 4))
         gradients = np.zeros((*chosen.shape, 4, 6))
         ends: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
@@ -148,7 +158,7 @@ class RoundGeometry(SpatialMotions):
                     values[rows[at], column], gradients[rows[at], column] = 0.0, 0.0
                     values[rows[at], column, 0], gradients[rows[at], column, 0] = beyond[at], slide[at]
 
-    @cached_property
+    @property
     def ending(self) -> Mask:
         return np.array([pair.flat is None and not pair.joins for pair in self.pairs for _ in pair.names])
 
@@ -175,7 +185,7 @@ class RoundGeometry(SpatialMotions):
         return values, gradients
 
     def arms(self, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-        place = self._place(q)
+        place = self.place(q)
         points = np.stack([touch.point for touch in self._touches(place)], axis=1)
         rows = np.broadcast_to(chosen, (len(q), chosen.shape[1]))
         return np.take_along_axis(points, rows[..., None], axis=1) - place.position[:, None]
@@ -188,15 +198,15 @@ class RoundGeometry(SpatialMotions):
         return np.column_stack(columns)
 
     def at_apices(self, q: np.ndarray, distance: float) -> np.ndarray:
-        found = [touch.beyond >= -distance for touch in self._touches(self._place(q))]
+        found = [touch.beyond >= -distance for touch in self._touches(self.place(q))]
         return np.column_stack(found)
 
     def rows(self, q: np.ndarray, pairs: np.ndarray, vectors: np.ndarray, at_end: np.ndarray) -> ContactRows:
         """A disk on a plane has the rows of `RIM_POINTS` points of its rim, as far as they are on the facet."""
-        flats = [pair.flat if (pair := self._flats[k]) is not None else None for k in pairs]
+        flats = [self.flat(k) for k in pairs.tolist()]
         if not any(flats):
             return ContactRows.single(vectors, at_end)
-        place, scale = self._place(q[None]), np.array([1.0] * 3 + [self.radius] * 3)
+        place, scale = self.place(q[None]), np.array([1.0] * 3 + [self.radius] * 3)
         rows, ends, owned = [], [], {}
         for k, flat in zip(pairs.tolist(), flats, strict=True):
             if flat is not None:
@@ -215,7 +225,7 @@ class RoundGeometry(SpatialMotions):
 
     def coincident(self, q: np.ndarray, distance: float) -> np.ndarray:
         """Where two pairs touch in one point: a circle on a rim."""
-        touches = self._touches(self._place(q))
+        touches = self._touches(self.place(q))
         points = np.stack([touch.point for touch in touches], axis=1)
         near = self.distances(q) <= distance
         together = np.linalg.norm(points[:, :, None] - points[:, None], axis=-1) <= distance
@@ -225,7 +235,7 @@ class RoundGeometry(SpatialMotions):
     def overlap(self, q: np.ndarray) -> np.ndarray:
         if not len(q):
             return np.zeros(0)
-        place = self._place(q)
+        place = self.place(q)
         return np.max([overlap_with(place, block, TOUCHING * self.size) for block in self.fixed], axis=0)
 
 

@@ -26,8 +26,9 @@ ALONGSIDE = 1e-4
 #: apart.
 _AROUND = 48
 
-#: Newton steps from there.
+#: Newton steps from there, at most, and the last one, that leaves rounding only [rad].
 _STEPS = 8
+_SETTLED = 1e-14
 
 #: Second derivatives below this, relative to the circle's, are those of a circle all of which is as near [-].
 _FLAT = 1e-9
@@ -49,7 +50,7 @@ class Touch:
         beyond: how far the point is beyond the end of a feature, negative within [m].
         exists: whether there is such a place; elsewhere the pair is far apart, and the rest says where one may be.
         slide: how ``beyond`` changes with motions, [f; m] about the point, shape (n, 6): points move along circles as
-            bodies turn.
+            bodies turn. Of crossings only if it is wanted.
     """
 
     gap: np.ndarray
@@ -250,6 +251,8 @@ def nearest_angles(circle: Circles, cone: Cones, sign: float) -> tuple[np.ndarra
         steepest = np.abs(first) + np.abs(second)
         by = -first / np.where(second > 0, second, np.maximum(steepest, np.finfo(float).tiny))
         angles = angles + np.clip(by, -step, step)
+        if np.abs(by).max(initial=0.0) <= _SETTLED:
+            break
     apart = np.abs(np.angle(np.exp(1j * (angles[:, 1] - angles[:, 0])))) > step
     exists[:, 1] &= apart & (value(angles)[2][:, 1] > 0)
     return angles, exists
@@ -296,7 +299,7 @@ def over_rim(cone: Cones, rim: Circles) -> tuple[Touch, Touch]:
     return Touch.ordered(found)
 
 
-def crossing(circle: Circles, rim: Circles, wedge: tuple[np.ndarray, np.ndarray]) -> tuple[Touch, Touch]:
+def crossing(circle: Circles, rim: Circles, wedge: tuple[np.ndarray, np.ndarray], slides: bool) -> tuple[Touch, Touch]:
     """A moving convex circular edge across the fixed rim of a hole: up to two places, where the circle is in its plane.
 
     The gap is along the common normal of both circles at their stationary distance there. A touch is beyond the end of
@@ -306,7 +309,7 @@ def crossing(circle: Circles, rim: Circles, wedge: tuple[np.ndarray, np.ndarray]
         rim: its axis is out of the block; the hole is within.
         wedge: of the circle the normals of the surfaces below and above it, each [outward, along], unit.
     """
-    found = [_crossing(circle, rim, wedge, start) for start in _starts(circle, rim)]
+    found = [_crossing(circle, rim, wedge, start, slides) for start in _starts(circle, rim)]
     first, second = found
     together = lengths_of(first.point - second.point) <= _ARRIVED**0.5 * circle.radius
     second = replace(second, exists=second.exists & ~together)
@@ -330,18 +333,22 @@ def _starts(circle: Circles, rim: Circles) -> list[np.ndarray]:
     return [middle + half, middle - half]
 
 
-def _crossing(circle: Circles, rim: Circles, wedge: tuple[np.ndarray, np.ndarray], start: np.ndarray) -> Touch:
+def _crossing(
+    circle: Circles, rim: Circles, wedge: tuple[np.ndarray, np.ndarray], start: np.ndarray, slides: bool
+) -> Touch:
     begin = angles = np.stack([start, rim.angles_of(circle.points(start))], axis=1)
     last = np.full(len(start), np.inf)
     for _ in range(_CROSSING_STEPS):
         step = _Met(circle, rim, angles).towards()
         last = np.abs(step).max(axis=1)
         angles = angles - np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
+        if last.max(initial=0.0) <= _SETTLED:
+            break
     # where there is no stationary distance near by, the place in the rim's plane tells which way there may be one
     met = _Met(circle, rim, np.where((last <= _ARRIVED)[:, None], angles, begin))
     bounds = met.bounds(wedge)
     worst = bounds.argmax(axis=0)
-    slide = met.slides(wedge)[worst, np.arange(len(worst))]
+    slide = met.slides(wedge)[worst, np.arange(len(worst))] if slides else np.zeros((len(worst), 6))
     exists = (met.sine >= ALONGSIDE) & (last <= _ARRIVED)
     beyond = circle.radius * bounds.max(axis=0)
     return Touch(dots(met.normal, met.away), met.normal, met.point, beyond, exists, circle.radius * slide)

@@ -12,7 +12,8 @@ from fixture_design.arrays import Indices, Point, Points, Weights
 from fixture_design.layout import Pose
 
 if TYPE_CHECKING:
-    from fixture_design.geometry import PartGeometry, SmoothSurface
+    from fixture_design.geometry import PartGeometry
+    from fixture_design.geometry.smooth_surface import SmoothSurface
 
 #: A direction is along an axis, and a point on one, up to this [-]; points relative to the part's size. Fits of meshes
 #: written with seven digits are better than that by far.
