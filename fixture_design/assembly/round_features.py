@@ -56,7 +56,7 @@ class Placement:
     def _circles(self) -> list[Circles]:
         """All of them, so that each has its basis once."""
         rows = zip(self.body.centers, self.body.radii.tolist(), strict=True)
-        return [Circles(self.R @ center + self.position, self.axis, radius) for center, radius in rows]
+        return [Circles.around(self.R @ center + self.position, self.axis, radius) for center, radius in rows]
 
     def surface(self, k: int) -> Cones:
         s, c = self.body.slopes[k].tolist()
@@ -275,7 +275,7 @@ def _with_hole(
         at_floor = _bounds((hole.point + hole.low * hole.axis)[None], hole)
         pairs += _on_plane(moving, floor, _meeting(boxes, at_floor), names.floors[which], number, names)
     for k, (center, axis, _) in enumerate(hole.rims()):
-        rim = Circles(center[None], axis[None], hole.radius)
+        rim = Circles.around(center[None], axis[None], hole.radius)
         beside = names.walls[which], names.facets[number, hole.openings[k]]
         pairs += _with_rim(moving, rim, (*which, k), boxes, names, beside)
     return pairs
@@ -315,7 +315,7 @@ def _with_rim(
 
 
 def _repeated(rim: Circles, count: int) -> Circles:
-    return Circles(np.repeat(rim.center, count, axis=0), np.repeat(rim.axis, count, axis=0), rim.radius)
+    return Circles.around(np.repeat(rim.center, count, axis=0), np.repeat(rim.axis, count, axis=0), rim.radius)
 
 
 def _wedge(moving: TurnedBody, k: int) -> tuple[np.ndarray, np.ndarray]:

@@ -108,7 +108,7 @@ _ABOVE = 1e6
 def _rim_inside(place: Placement, center: np.ndarray, axis: np.ndarray, radius: float, near: float) -> np.ndarray:
     """How deep the rim, moved ``near`` into the block, is in the body."""
     count = len(place.R)
-    rim = Circles(
+    rim = Circles.around(
         np.repeat((center - near * axis)[None], count, axis=0), np.repeat(axis[None], count, axis=0), radius + near
     )
     points = []

@@ -7,13 +7,13 @@ then change it by [n; arm X n] exactly: that the point moves along the features 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
 
-Placed = Float[np.ndarray, "n 3"]
+#: One vector for each placement, shape (n, 3); not checked, as it is made very often.
+Placed = np.ndarray
 
 #: Sine of the angle below which a circle lies along a plane, or two edges have no common normal [-].
 ALONG = 1e-7
@@ -40,8 +40,7 @@ _LARGEST_STEP = 0.5
 _CROSSING_STEPS, _ARRIVED = 12, 1e-10
 
 
-@dataclass(frozen=True, eq=False)
-class Touch:
+class Touch(NamedTuple):
     """One pair, at n placements.
 
     Attributes:
@@ -78,23 +77,23 @@ class Touch:
         )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Circles:
-    """One circle at n placements: center and unit axis, shape (n, 3), and radius [m]."""
+class Circles(NamedTuple):
+    """One circle at n placements: center and unit axis, shape (n, 3), radius [m], two unit vectors across the axis."""
 
     center: Placed
     axis: Placed
     radius: float
+    basis: tuple[np.ndarray, np.ndarray]
 
-    @cached_property
-    def basis(self) -> tuple[np.ndarray, np.ndarray]:
-        """Two unit vectors across the axis, shape (n, 3)."""
-        x, y, z = self.axis.T
+    @classmethod
+    def around(cls, center: np.ndarray, axis: np.ndarray, radius: float) -> Circles:
+        """With two unit vectors across the axis."""
+        x, y, z = axis.T
         # the axis with two of its components exchanged, one with its sign: those that are not both small
         zero = np.zeros_like(x)
         first = np.where((np.abs(x) > np.abs(z))[:, None], np.stack([-y, x, zero], -1), np.stack([zero, -z, y], -1))
         first /= lengths_of(first)[:, None]
-        return first, crossed(self.axis, first)
+        return cls(center, axis, radius, (first, crossed(axis, first)))
 
     def outward(self, angles: np.ndarray) -> np.ndarray:
         """Unit vectors from the center to the points at angles (n,) or (n, m)."""
@@ -119,8 +118,7 @@ class Circles:
         return np.arctan2(dots(away, v), dots(away, u))
 
 
-@dataclass(frozen=True, eq=False)
-class Cones:
+class Cones(NamedTuple):
     """A surface of revolution with a straight generator, at n placements.
 
     Its points are at ``radius`` from the axis at ``origin``, growing along it; offset = c (rho - radius) - s z with
@@ -312,7 +310,7 @@ def crossing(circle: Circles, rim: Circles, wedge: tuple[np.ndarray, np.ndarray]
     found = [_crossing(circle, rim, wedge, start, slides) for start in _starts(circle, rim)]
     first, second = found
     together = lengths_of(first.point - second.point) <= _ARRIVED**0.5 * circle.radius
-    second = replace(second, exists=second.exists & ~together)
+    second = second._replace(exists=second.exists & ~together)
     return Touch.ordered([first, second])
 
 
