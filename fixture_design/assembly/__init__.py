@@ -12,10 +12,12 @@ from fixture_design.assembly.generate import state_graph
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.graph import ContactState, ContactStateGraph, StateTransition
 from fixture_design.assembly.path import StatePath, Waypoint, state_path
+from fixture_design.assembly.round_space import RIM_POINTS
 from fixture_design.assembly.state_at import StateAt, state_at
 from fixture_design.assembly.unseen import Unseen
 
 __all__ = [
+    "RIM_POINTS",
     "Assembly",
     "AssemblyBody",
     "ContactState",

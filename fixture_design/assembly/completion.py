@@ -99,7 +99,7 @@ def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sort
 
 
 def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
-    """The configurations moved onto the equations that hold and one more: each other pair that takes part."""
+    """The configurations moved onto the equations that hold and one more: of another pair, or one's end."""
     found = [start]
     counts = start.touching.sum(axis=1)
     # those with as many contacts together, so that none is solved with more equations than it has
@@ -108,6 +108,9 @@ def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
         kept = np.nonzero(start.touching[rows])[1].reshape(len(rows), count)
         row, other = np.nonzero(~start.touching[rows] & geometry.takes_part)
         found.append(onto(geometry, start.q[rows][row], np.column_stack([kept[row], other])))
+        row, place = np.nonzero(geometry.ending[kept])
+        at_end = kept[row] + len(geometry.names) * (np.arange(count) == place[:, None])
+        found.append(onto(geometry, start.q[rows][row], at_end))
     return joined(found)
 
 
@@ -125,10 +128,11 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         pairs = np.flatnonzero(touching)
         if not pairs.size:
             continue
-        for mode in contact_modes(vectors[k, pairs], ends[k, pairs], geometry.free, turns):
+        found = geometry.rows(start.q[k], pairs, vectors[k, pairs], ends[k, pairs])
+        for mode in contact_modes(found.vectors, found.at_end, geometry.free, turns):
             rows.append(k)
             displacements.append(mode.displacement)
-            kept.append(pairs[mode.kept])
+            kept.append(pairs[found.pairs_kept(mode.kept)])
     width = max((len(pairs) for pairs in kept), default=1)
     padded = np.full((len(kept), max(width, 1)), -1)
     for row, pairs in zip(padded, kept, strict=True):

@@ -11,6 +11,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from fixture_design.arrays import Mask, Vector
+from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.pair_equations import PairEquations
 from fixture_design.errors import UnsupportedError
 
@@ -64,6 +65,15 @@ class ContactGeometry(Protocol):
         """Contact equations of chosen pairs; q of shape (n, c), chosen of shape (n, m) or (1, m)."""
         ...
 
+    def solving(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
+        """As `equations`, to move configurations to where all chosen pairs touch; P more is a pair at its end."""
+        ...
+
+    @property
+    def ending(self) -> Mask:
+        """Shape (P,): pairs that may be chosen at their ends, because other pairs tell these places badly."""
+        ...
+
     def distances(self, q: np.ndarray) -> np.ndarray:
         """H of all pairs, shape (n, P) [m]."""
         ...
@@ -114,6 +124,10 @@ class ContactGeometry(Protocol):
 
     def inside(self, q: np.ndarray) -> Mask:
         """Which configurations are in the region."""
+        ...
+
+    def rows(self, q: np.ndarray, pairs: np.ndarray, vectors: np.ndarray, at_end: np.ndarray) -> ContactRows:
+        """Face vectors of the pairs that touch at one configuration (c,): theirs, or those of several points."""
         ...
 
     def possible_together(self) -> np.ndarray:

@@ -13,6 +13,8 @@ from fixture_design.assembly.assembly import Assembly
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.planar import PlanarGeometry
+from fixture_design.assembly.round_contacts import round_contacts
+from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.spatial_contacts import spatial_contacts
 from fixture_design.cones import ConeUnion, PolyhedralConvexCone
@@ -51,6 +53,8 @@ def contacts_of(geometry: ContactGeometry, configuration: ArrayLike) -> tuple[Co
         raise AssemblyError(f"a configuration is {numbers} finite numbers", found=f"{q.tolist()}"[:60])
     if isinstance(geometry, PlanarGeometry):
         return planar_contacts(geometry, q)
+    if isinstance(geometry, RoundGeometry):
+        return round_contacts(geometry, q)
     assert isinstance(geometry, SpatialGeometry)
     return spatial_contacts(geometry, q)
 

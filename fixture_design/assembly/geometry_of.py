@@ -5,6 +5,8 @@ from __future__ import annotations
 from fixture_design.assembly.assembly import Assembly
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.planar import PlanarGeometry
+from fixture_design.assembly.round_bodies import round_bodies
+from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.assembly.spatial import SpatialGeometry
 
 
@@ -13,8 +15,9 @@ def geometry_of(assembly: Assembly) -> ContactGeometry:
 
     Raises:
         AssemblyError: bodies or names that cannot be used.
-        UnsupportedError: in space: bodies with round surfaces, or too many features.
+        UnsupportedError: in space: round surfaces that form no pairs, or too many features.
     """
     if assembly.space == "planar":
         return PlanarGeometry.of(assembly)
-    return SpatialGeometry.of(assembly)
+    found = round_bodies(assembly)
+    return SpatialGeometry.of(assembly) if found is None else RoundGeometry.of(assembly, *found)

@@ -49,8 +49,8 @@ def solved(
     for _ in range(_MOST_STEPS):
         if not len(active):
             break
-        found = geometry.equations(q[active], chosen[active])
-        kept = slice(None) if ends else slice(0, 1)
+        found = geometry.solving(q[active], chosen[active])
+        kept = slice(None) if ends else list(found.firm)
         values = found.values[:, :, kept].reshape(len(active), -1)
         left[active] = np.linalg.norm(values, axis=1)
         going = left[active] > _ENOUGH * SOLVED * geometry.size

@@ -18,10 +18,12 @@ class PairEquations:
     Attributes:
         values: shape (n, m, k) [m].
         gradients: shape (n, m, k, d), with respect to displacements about the moving body's origin, fixed axes.
+        firm: those of the k that hold wherever a contact is held: the gap, and what keeps a disk along a plane.
     """
 
     values: Float[np.ndarray, "n m k"]
     gradients: Float[np.ndarray, "n m k d"]
+    firm: tuple[int, ...] = (0,)
 
     @property
     def distances(self) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from fixture_design.arrays import Mask
 from fixture_design.assembly.assembly import Assembly, Region
 from fixture_design.assembly.contact_geometry import refuse_too_many
+from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.features import PlanarFeatures, planar_features
 from fixture_design.assembly.pair_equations import PairEquations
 from fixture_design.assembly.planar_overlap import ConvexPiece, overlap, pieces_of
@@ -69,6 +70,13 @@ class PlanarGeometry:
 
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(q, chosen)
+
+    def solving(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
+        return self.equations(q, chosen)
+
+    @property
+    def ending(self) -> Mask:
+        return np.zeros(len(self.names), dtype=bool)
 
     def distances(self, q: np.ndarray) -> np.ndarray:
         return self.equations(q, np.arange(len(self.names))[None]).distances
@@ -137,6 +145,9 @@ class PlanarGeometry:
             return found
         smallest, largest = self.region.turns
         return found & (q[:, 2] >= smallest - TOUCHING) & (q[:, 2] <= largest + TOUCHING)
+
+    def rows(self, q: np.ndarray, pairs: np.ndarray, vectors: np.ndarray, at_end: np.ndarray) -> ContactRows:
+        return ContactRows.single(vectors, at_end)
 
     def possible_together(self) -> np.ndarray:
         sides = [_feature_intervals(side) for side in (self.moving, self.fixed)]

@@ -10,12 +10,13 @@ from jaxtyping import Float
 
 from fixture_design.arrays import Points, Weights
 from fixture_design.assembly.assembly import AssemblyBody
+from fixture_design.assembly.body_parts import part_of
 from fixture_design.assembly.convex_pieces import convex_pieces
 from fixture_design.assembly.mesh_apices import corner_points, touching_apices
 from fixture_design.assembly.mesh_edges import MeshEdges, mesh_edges
 from fixture_design.assembly.polytope import Polytope
 from fixture_design.errors import UnsupportedError
-from fixture_design.layout import Part, Pose
+from fixture_design.layout import Pose
 
 if TYPE_CHECKING:
     from fixture_design.geometry import PartGeometry
@@ -64,9 +65,8 @@ class Polyhedron:
         """A part, placed; facets in the order of their names.
 
         Raises:
-            UnsupportedError: round surfaces of many facets, facets that do not meet in points, too many convex pieces.
+            UnsupportedError: facets that do not meet in points, too many convex pieces.
         """
-        _refuse_round(geometry)
         edges = mesh_edges(geometry)
         heights = [
             geometry.vertices[np.unique(geometry.triangles[facet.triangles])] @ normal
@@ -97,26 +97,25 @@ def polyhedron_of(body: AssemblyBody) -> Polyhedron:
 
     Raises:
         GeometryError: a mesh that cannot be read.
-        UnsupportedError: as `Polyhedron.of_part`.
+        UnsupportedError: round surfaces of many facets; else as `Polyhedron.of_part`.
     """
     if body.box is not None:
         points = (np.array(list(np.ndindex(2, 2, 2)), dtype=np.float64) - 0.5) * body.box
         return Polyhedron.convex(Polytope.hull_of(points if body.pose is None else body.pose.points(points)))
-    from fixture_design.geometry import PartGeometry, load_part  # noqa: PLC0415 - only where a file is read
-
-    assert body.file is not None
-    kind = "mesh" if body.kind == "mesh" else "urdf"
-    part = Part(body.file.stem, kind, body.file, None, body.scale, Pose.identity(3))
-    geometry = load_part(part)
-    assert isinstance(geometry, PartGeometry)
+    geometry = part_of(body)
+    _refuse_round(geometry)
     return Polyhedron.of_part(geometry, body.pose or Pose.identity(3))
 
 
+def strips(geometry: PartGeometry) -> int:
+    """How many facets stand for round surfaces."""
+    return sum(len(surface.facets) for surface in geometry.smooth_surfaces)
+
+
 def _refuse_round(geometry: PartGeometry) -> None:
-    surfaces = geometry.smooth_surfaces
-    count = sum(len(surface.facets) for surface in surfaces)
+    count = strips(geometry)
     if count > MOST_STRIPS:
-        names = ", ".join(surface.name for surface in surfaces)
+        names = ", ".join(surface.name for surface in geometry.smooth_surfaces)
         raise UnsupportedError(
             f"{geometry.name!r} has round surfaces ({names}), and round features form no contact pairs",
             found=f"{count} facets that stand for them",

@@ -48,7 +48,8 @@ def tangent(geometry: ContactGeometry, q: np.ndarray, kept: np.ndarray, wished: 
     some = np.flatnonzero((kept >= 0).any(axis=1))
     if some.size:
         chosen = np.where(kept[some] >= 0, kept[some], kept[some].max(axis=1, keepdims=True))
-        rows = geometry.equations(q[some], chosen).gradients[:, :, 0] / weights(geometry)
+        found = geometry.equations(q[some], chosen)
+        rows = found.gradients[:, :, list(found.firm)].reshape(len(some), -1, geometry.dimension) / weights(geometry)
         rows = np.where(geometry.free, rows, 0.0)
         _, values, right = np.linalg.svd(rows, full_matrices=False)
         # rows that are dependent, or repeated, add no direction

@@ -10,7 +10,14 @@ from typing import Any
 import numpy as np
 
 from fixture_design.arrays import read_only
-from fixture_design.assembly import Assembly, ContactState, ContactStateGraph, StateTransition, Unseen
+from fixture_design.assembly import (
+    RIM_POINTS,
+    Assembly,
+    ContactState,
+    ContactStateGraph,
+    StateTransition,
+    Unseen,
+)
 from fixture_design.io.assembly_file import assembly_from_data
 from fixture_design.io.documents import Document, read_document
 from fixture_design.io.graph_records import GraphRecord
@@ -45,6 +52,7 @@ def graph_to_dict(graph: ContactStateGraph, path: Path | None = None) -> dict[st
                 "chance": graph.unseen.chance,
             },
             "run": {"version": VERSION, "seed": graph.seed},
+            **_approximations(graph),
         },
         "assembly": _embedded(graph.assembly, path),
         "nodes": [
@@ -65,6 +73,17 @@ def graph_to_dict(graph: ContactStateGraph, path: Path | None = None) -> dict[st
             }
             for edge in graph.transitions
         ],
+    }
+
+
+def _approximations(graph: ContactStateGraph) -> dict[str, Any]:
+    """What of the graph is not exact, in words."""
+    if not any(contact.startswith("disk ") for state in graph.states for contact in state.contacts):
+        return {}
+    return {
+        "approximations": [
+            f"a disk on a plane counts as {RIM_POINTS} points of its rim: its cones of motions are approximate"
+        ]
     }
 
 

@@ -60,6 +60,7 @@ class AboutRecord(Record):
     complete: bool = True
     unseen: UnseenRecord
     run: RunRecord
+    approximations: Annotated[tuple[Text, ...], Field(strict=False)] = ()
 
 
 class GraphRecord(Record):

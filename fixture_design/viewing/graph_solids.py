@@ -9,7 +9,7 @@ import numpy as np
 
 from fixture_design.assembly.assembly import AssemblyBody
 from fixture_design.assembly.convex_pieces import surrounded
-from fixture_design.assembly.polyhedron import polyhedron_of
+from fixture_design.assembly.round_facets import facets_of
 from fixture_design.viewing.scene.shapes import Mesh, Points3, Segments3, Vector3
 
 
@@ -47,7 +47,7 @@ def drawn(body: AssemblyBody) -> DrawnBody:
     import shapely  # noqa: PLC0415 - only where there are bodies in space
     from shapely.geometry.polygon import orient  # noqa: PLC0415 - as above
 
-    solid = polyhedron_of(body)
+    solid = facets_of(body)
     facets, triangles = [], []
     for normal, offset, border in zip(solid.normals, solid.offsets, solid.borders, strict=True):
         basis = np.linalg.svd(normal[None])[2][1:]

@@ -223,11 +223,11 @@ def test_a_square_peg_over_a_hole_in_one_mesh(tmp_path: Path) -> None:
 
 
 def test_round_parts_are_refused_by_name(tmp_path: Path) -> None:
+    """A pipe: what moves must be convex."""
     circle = np.array([[np.cos(t), np.sin(t)] for t in np.linspace(0, 2 * np.pi, 48, endpoint=False)])
-    with pytest.raises(UnsupportedError, match=r"round surfaces \(cylinder 1\)"):
-        state_graph(
-            spatial(prism(tmp_path / "round.obj", circle.tolist(), 0, 3), FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 3])
-        )
+    pipe = prism(tmp_path / "pipe.obj", circle.tolist(), 0, 3, [(0.5 * circle).tolist()])
+    with pytest.raises(UnsupportedError, match=r"'pipe' has round surfaces \(cylinder 1, cylinder 2\)"):
+        state_graph(spatial(pipe, FLOOR, x=[-1, 1], y=[-1, 1], z=[0, 3]))
 
 
 def test_the_factory_peg_and_hole() -> None:
