@@ -183,10 +183,12 @@ HELD = 1e-6
 #: Coefficient of friction that design takes where a part cannot be closed without [-]: steel on steel, not greased.
 USUAL_FRICTION = 0.2
 
-#: How far off the normals of candidates may be that design tries, one after the other [rad]: plane facets as a file's
-#: digits leave them; where that only just fails, those that need none; round surfaces that were fitted well; then what
-#: still leaves a margin. What is known less well decides nothing.
-NORMALS_KNOWN_TO = (1e-5, 0.0, 1e-3, 2e-2)
+#: How far off the normals of candidates may be that design tries, one after the other [rad]: on round surfaces those
+#: that were fitted well, then what still leaves a margin. What is known less well decides nothing.
+NORMALS_KNOWN_TO = (1e-3, 2e-2)
+
+#: The digits of a file leave the normals of plane facets this well known, slivers apart [rad].
+PLANE_KNOWN_TO = 1e-5
 
 #: Normals this well known can be counted on where there is a margin [rad].
 KNOWN_WELL = 1e-3

@@ -56,7 +56,11 @@ def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
     yield f"   least weight {grasp.quality.least_weight:.3g}, epsilon {epsilon}{robust}"
     if grasp.weakest is not None:
         way = ", ".join(f"{value:.2f}" for value in grasp.weakest.direction)
-        force = f"at least {grasp.weakest.force:.3g} N" if np.isfinite(grasp.weakest.force) else "as much as the drives can do"
+        force = (
+            f"at least {grasp.weakest.force:.3g} N"
+            if np.isfinite(grasp.weakest.force)
+            else "as much as the drives can do"
+        )
         alone = " by forces alone, but not all moments" if grasp.closed is Answer.NO else ""
         yield f"   holds {force} in the worst direction ({way}){alone}"
     if grasp.held is not None:

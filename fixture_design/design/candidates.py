@@ -62,6 +62,7 @@ class Candidates:
         scale: reference point and length of the rows.
         places: where an element is asked to stand, shape (n, p) [m].
         makes: what an element there would be, for those that are none yet.
+        plane: whether what each touches is plane, and no surface that was fitted.
     """
 
     points: Several
@@ -73,6 +74,7 @@ class Candidates:
     scale: Scale
     places: Points
     makes: tuple[Make | None, ...]
+    plane: Mask
 
     @classmethod
     def of(cls, spots: Spots, scale: Scale, friction: float = 0.0, make: Make | None = None) -> Candidates:
@@ -83,7 +85,9 @@ class Candidates:
         nothing = (None,) * count
         makes = (make or Make(PointTip()),) * count
         places = np.array(spots.points)
-        return cls(points, normals, spots.features, errors, np.full(count, friction), nothing, scale, places, makes)
+        plane = np.array([origin.kind == "exact" for origin in spots.provenance], dtype=bool)
+        rubbing = np.full(count, friction)
+        return cls(points, normals, spots.features, errors, rubbing, nothing, scale, places, makes, plane)
 
     @classmethod
     def touching(
@@ -101,6 +105,7 @@ class Candidates:
             scale,
             np.array([element.at for element, _ in found]),
             tuple(Make(element.tip, element.axis) for element, _ in found),
+            np.array([all(c.provenance.kind == "exact" for c in one) for _, one in found], dtype=bool),
         )
 
     def and_also(self, others: Candidates) -> Candidates:
@@ -117,6 +122,7 @@ class Candidates:
             self.scale,
             np.concatenate([self.places, others.places]),
             (*self.makes, *others.makes),
+            np.append(self.plane, others.plane),
         )
 
     def __len__(self) -> int:
@@ -179,6 +185,7 @@ class Candidates:
             elements=tuple(self.elements[number] for number in numbers),
             places=self.places[numbers],
             makes=tuple(self.makes[number] for number in numbers),
+            plane=self.plane[numbers],
         )
 
     def with_elements(

@@ -10,7 +10,7 @@ from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import GeometryError
 from fixture_design.layout import Requirement
-from fixture_design.tolerances import KNOWN_WELL, NORMALS_KNOWN_TO, USUAL_FRICTION
+from fixture_design.tolerances import KNOWN_WELL, NORMALS_KNOWN_TO, PLANE_KNOWN_TO, USUAL_FRICTION
 
 Require = Mapping[str, tuple[Requirement, ...]]
 
@@ -64,18 +64,22 @@ def unused_friction(task: Task) -> tuple[str, ...]:
 
 
 def by_certainty(candidates: Candidates) -> Iterator[Candidates]:
-    """Candidates whose normals are known best; then those known less well too, as far as that adds any.
+    """Plane facets, as a file's digits leave them; where that only just fails, those that need no digits; then round
+    surfaces too, the less well known they are the later, as far as that adds any.
 
     A group that cannot notice all that the next one can is left out: the end faces of a shaft are exact, and alone they
     are no place for its locators.
     """
+    errors = candidates.errors
     groups: list[Candidates] = []
-    for error in NORMALS_KNOWN_TO:
-        group = candidates.chosen(candidates.errors <= error)
+    for some in (
+        candidates.plane & (errors <= PLANE_KNOWN_TO), errors == 0, *(errors <= known for known in NORMALS_KNOWN_TO)
+    ):  # fmt: skip
+        group = candidates.chosen(some)
         if len(group) and all(len(group) != len(other) for other in groups):
             groups.append(group)
     if not groups:
         raise GeometryError("no candidate has a normal that is known well enough", expected="facets that are flat")
-    known = len(candidates.chosen(candidates.errors <= KNOWN_WELL))
+    known = int((errors <= KNOWN_WELL).sum())
     most = max((one.freedoms for one in groups if len(one) <= known), default=groups[0].freedoms)
     yield from (one for one in groups if one.freedoms >= most)
