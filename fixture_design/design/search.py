@@ -42,15 +42,27 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
     regions, complete = regions_of(problem, seed)
     complete = complete and not problem.vague
     best = _best_square(problem, regions, seed, progress) if rubs(problem) else None
+    hopeless = 0
     for number, region in enumerate(regions):
         if problem.cancelled() or (best is not None and (_too_many(region, best) or number >= MOST_REGIONS)):
             break
         progress(f"way out {number + 1} of {len(regions)}", number / len(regions))
+        if (best is None or not best.holds) and _never_holds(problem, region):
+            hopeless += 1
+            continue
         best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
     least = min((region.bound for region in regions), default=None)
     if best is None:
-        return Outcome(best, least, complete)
+        none = np.inf if regions and hopeless == len(regions) else None
+        return Outcome(best, least, complete, best_preload=none)
     return _with_bounds(problem, best, regions, least, complete)
+
+
+def _never_holds(problem: Problem, region: Region) -> bool:
+    """Whether no locators of a region, with clamps anywhere, can hold what they have to within the limits of these."""
+    if problem.pushing_bound is None or not problem.pushing_bound.duties.required:
+        return False
+    return least_bound(problem, problem.pushing_bound, region.pool)[0] == np.inf
 
 
 def _too_many(region: Region, best: Found) -> bool:
