@@ -222,6 +222,9 @@ DEPENDENT = 1e-5
 #: the ties of verdicts, and small enough to ask for hardly more preload.
 PRESSED = 1e-2
 
+#: The same where friction does its worst [-]: friction takes most of what there is, and verdicts need only their ties.
+PRESSED_ANYHOW = 1e-3
+
 #: A clamp that is to press the part against its locators pushes with this at least, where no limits say so [N]: clearly
 #: more than nothing on a bench, far less than any clamp can do. No bound relies on it.
 LEAST_PUSH = 1.0

@@ -14,6 +14,7 @@ from fixture_design.design.features import features_of
 from fixture_design.design.fitting import in_every_way, in_the_way, standing
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import redundancy
+from fixture_design.design.merit import as_it_holds, better_of, merit, noted
 from fixture_design.design.pinned import pinned_best_first
 from fixture_design.design.plans import LEAVING, LOCATING, Plan
 from fixture_design.design.preloads import duties_of, found_preload, preloaded
@@ -33,8 +34,6 @@ from fixture_design.layout import Answer
 MOST_BARRED = 8
 #: How many pairs of holes are verified before pins are given up.
 MOST_PINNED = 6
-
-_RANK = {Answer.YES: 2, Answer.UNDECIDED: 1, Answer.NO: 0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +59,6 @@ class _UselessError(Exception):
     def __init__(self, useless: Mask) -> None:
         super().__init__(f"{int(useless.sum())} candidates")
         self.useless = useless
-
-
-def better_of(first: DesignResult, second: DesignResult) -> DesignResult:
-    """The one that does more; of two without a layout the later one, which looked at more."""
-    if first.layout is None:
-        return second
-    return first if second.layout is None or _RANK[first.satisfied] > _RANK[second.satisfied] else second
 
 
 def leaves_straight(task: Task, plan: Plan) -> bool:
@@ -116,7 +108,7 @@ def attempt(asked: Asked, candidates: Candidates, plan: Plan, *, keep_all: bool,
     if task.candidates.pins is None:
         return found
     note = "without pins: no two holes of the part take a pin each in a way that lets it out and closes it"
-    return replace(found, notes=(*found.notes, note)) if pinned is None else better_of(found, pinned)
+    return noted(found, note) if pinned is None else better_of(found, pinned)
 
 
 def _by_points(asked: Asked, problem: Problem, candidates: Candidates, start: Start, plan: Plan) -> DesignResult:
@@ -179,17 +171,17 @@ def _past_locators(
     blocking = [index for index in outcome.found.locators.tolist() if hit[index]]
     where = ", ".join(f"{names[index]} on {problem.candidates.features[index]}" for index in blocking)
     if len(problem.barred) == MOST_BARRED:
-        return replace(result, notes=(*result.notes, f"in the part's way out: {where}; no more was tried"))
+        return noted(result, f"in the part's way out: {where}; no more was tried")
     barred = replace(problem, barred=(*problem.barred, (outcome.found.out, hit)))
     again = _past_locators(asked, barred, start, plan, find)
-    if again.layout is None or _RANK[again.satisfied] < _RANK[result.satisfied]:
-        return replace(result, notes=(*result.notes, f"in the part's way out: {where}; nothing better was found"))
+    if merit(again) < merit(result):
+        return noted(result, f"in the part's way out: {where}; nothing better was found")
     motion = np.pad(outcome.found.out, (0, problem.candidates.dimension - len(outcome.found.out)))
     left = tuple(
         Step("removed", f"a locator on {problem.candidates.features[i]}", "in the way", motion) for i in blocking
     )
     note = f"{int(hit.sum())} candidates are in the part's way out along {np.round(outcome.found.out, 3).tolist()}"
-    return replace(again, steps=(*left, *again.steps), notes=(*again.notes, note))
+    return noted(replace(again, steps=(*left, *again.steps)), note)
 
 
 def _unstoppable(asked: Asked, problem: Problem, candidates: Candidates, start: Start) -> DesignResult:
@@ -263,7 +255,7 @@ def _drawn_up(
         best_preload_here=outcome.best_preload_here,
         reason=reason, notes=tuple(_notes(asked.task, problem, found)),
     )  # fmt: skip
-    return result, names
+    return as_it_holds(result), names
 
 
 def _notes(task: Task, problem: Problem, found: Found) -> Iterator[str]:

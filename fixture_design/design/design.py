@@ -7,8 +7,9 @@ from dataclasses import replace
 from itertools import product
 
 from fixture_design.arrays import Vector
-from fixture_design.design.attempt import Asked, attempt, better_of, leaves_straight, opens_all
+from fixture_design.design.attempt import Asked, attempt, leaves_straight, opens_all
 from fixture_design.design.fitting import fitting
+from fixture_design.design.merit import better_of
 from fixture_design.design.plans import Plan, by_certainty, plans, unused_friction
 from fixture_design.design.result import DesignResult
 from fixture_design.design.shortfall import left_out_in_words, not_yet_no

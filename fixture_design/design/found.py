@@ -18,6 +18,7 @@ class Found:
             features 1 / volume of the locators' rows.  margin: a lower bound of that of closure.
         preload: the least that the clamps push with in all [N], inf where they cannot balance the loads within their
             limits; 0 where nobody asks.  holds: False where it is inf and the loads have to be held.
+        seats: False where friction may keep the part off a locator that it has to sit on.
     """
 
     locators: Indices
@@ -27,18 +28,21 @@ class Found:
     margin: float
     preload: float = 0.0
     holds: bool = True
+    seats: bool = True
 
     @property
     def count(self) -> int:
         return len(self.locators) + len(self.clamps)
 
     def score(self, objective: tuple[str, ...]) -> tuple[float, ...]:
-        """Small is good: whether the loads are held, then the objective; what it does not name comes last."""
+        """Small is good: whether the loads are held, whether the part sits, then the objective; what it does not name
+        comes last.
+        """
         values = {
             "fewest": float(self.count), "accuracy": self.accuracy, "margin": -self.margin, "preload": self.preload,
         }  # fmt: skip
         order = [*objective, *(word for word in values if word not in objective)]
-        return (float(not self.holds), *(values[word] for word in order))
+        return (float(not self.holds), float(not self.seats), *(values[word] for word in order))
 
 
 @dataclass(frozen=True, eq=False)

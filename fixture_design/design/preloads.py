@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, permutations
 
@@ -15,6 +15,7 @@ from fixture_design.design.duties import Duties
 from fixture_design.design.found import Found
 from fixture_design.design.plans import Plan
 from fixture_design.design.problem import Problem
+from fixture_design.design.rubbing import rubs, seated
 from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import UnsupportedError
@@ -122,6 +123,8 @@ def _preloads(
         # 0.0 is added since -0.0 is none
         return {names[k]: float(np.clip(values[k], *limits[k])) + 0.0 for k in order}
 
+    if rubs(problem):
+        yield from _anyhow(problem, found, names)
     if any("holds_loads" in words for words in layout.require.values()):
         roomy = replace(problem.pushing, duties=duties.with_reserve(RESERVE)).least(found.locators, found.clamps)
         if np.isfinite(roomy.total):
@@ -136,6 +139,19 @@ def _preloads(
             yield from (pushes(enough, order) for order in orders)
     for more in (0.0, *MORE_PUSH):
         yield from (pushes(least * (1 + more), order) for order in orders)
+
+
+def _anyhow(problem: Problem, found: Found, names: Sequence[str]) -> Iterator[dict[str, float]]:
+    """Preloads that press every locator however friction rubs: with a reserve of what has to be held, or without."""
+    assert problem.pushing is not None
+    duties = problem.pushing.duties
+    for program in (replace(problem.pushing, duties=duties.with_reserve(RESERVE)), problem.pushing):
+        sits = seated(problem, found.locators, found.clamps, program)
+        if sits is not None:
+            clamps = found.clamps[duties.pushes[found.clamps]]
+            for more in (0.0, *MORE_PUSH[:-2]):
+                pushes = np.clip(sits.pushes * (1 + more), duties.low[clamps], duties.high[clamps])
+                yield {names[k]: float(pushes[k]) + 0.0 for k in sits.order}
 
 
 def _with(

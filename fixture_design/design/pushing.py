@@ -15,7 +15,7 @@ nothing outside is worth it, the least is that of all candidates: a bound for ev
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -67,14 +67,19 @@ class _System:
     slacks: Mask
     preloads: Mask
 
-    def least(self, costs: Mask, slack: Weights | float) -> Any:
-        """What scipy finds for the least sum of some of x, with no more than ``slack`` in each slack."""
+    def least(self, costs: Mask, slack: Weights | float, most: Weights | None = None) -> Any:
+        """What scipy finds for the least sum of some of x, with no more than ``slack`` in each slack.
+
+        Args:
+            most: what stands to the right of ``upper``, by default zeros.
+        """
         from scipy.optimize import linprog  # noqa: PLC0415 - slow to import
 
         high = self.high.copy()
         high[self.slacks] = slack
+        zeros = None if self.upper is None else np.zeros(len(self.upper))
         return linprog(
-            costs.astype(float), A_ub=self.upper, b_ub=None if self.upper is None else np.zeros(len(self.upper)),
+            costs.astype(float), A_ub=self.upper, b_ub=zeros if most is None else most,
             A_eq=self.matrix, b_eq=self.right, bounds=np.column_stack([self.low, high]), method="highs",
         )  # fmt: skip
 
@@ -128,6 +133,19 @@ class Program:
         system, _ = self._system(locators, clamps)
         found = system.least(system.preloads, 0.0)
         return np.inf if found.x is None else float(found.x[system.preloads].sum()) * self._unit()
+
+    def least_within(self, locators: Indices, clamps: Indices, slopes: np.ndarray, fixed: Weights) -> Weights | None:
+        """What those that push do at least, shape (k,) [N], if besides slopes @ p + fixed >= 0; None if nothing does.
+
+        Args:
+            slopes: shape (m, k).  fixed: shape (m,) [N].
+        """
+        system, _ = self._system(locators, clamps)
+        more = np.hstack([np.zeros((len(slopes), int((~system.preloads).sum()))), -slopes])
+        upper = more if system.upper is None else np.vstack([system.upper, more])
+        most = np.append(np.zeros(len(upper) - len(more)), fixed / self._unit())
+        found = replace(system, upper=upper).least(system.preloads, 0.0, most)
+        return None if found.x is None else found.x[system.preloads] * self._unit()
 
     def _system(self, locators: Indices, others: Indices) -> tuple[_System, Indices]:
         """The equations of all wrenches, one under the other, and the columns of each beside those of the next; and

@@ -8,6 +8,7 @@ what is there already; so the smallest bound of all cells proves the number of e
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,7 +23,9 @@ from fixture_design.design.pressing import least_bound, least_here, pressed_clam
 from fixture_design.design.problem import Problem
 from fixture_design.design.regions import Region, regions_of
 from fixture_design.design.removing import bound_both_ways
+from fixture_design.design.rubbing import rubs, seated
 from fixture_design.design.sets import before_accuracy, reacting, sets_of
+from fixture_design.design.square import square_sets
 from fixture_design.design.ways import Progress
 
 #: Restarts in one region, and regions that are searched for better layouts of the same size.
@@ -38,16 +41,61 @@ def search(problem: Problem, seed: int, progress: Progress = lambda words, part:
         return _whatever_closes(problem, seed)
     regions, complete = regions_of(problem, seed)
     complete = complete and not problem.vague
-    best: Found | None = None
+    best = _best_square(problem, regions, seed, progress) if rubs(problem) else None
+    hopeless = 0
     for number, region in enumerate(regions):
-        if problem.cancelled() or (best is not None and (region.bound > len(best.clamps) or number >= MOST_REGIONS)):
+        if problem.cancelled() or (best is not None and (_too_many(region, best) or number >= MOST_REGIONS)):
             break
         progress(f"way out {number + 1} of {len(regions)}", number / len(regions))
+        if (best is None or not best.holds) and _never_holds(problem, region):
+            hopeless += 1
+            continue
         best = _better_within(problem, region, np.random.default_rng([seed, number]), best)
     least = min((region.bound for region in regions), default=None)
     if best is None:
-        return Outcome(best, least, complete)
+        none = np.inf if regions and hopeless == len(regions) else None
+        return Outcome(best, least, complete, best_preload=none)
     return _with_bounds(problem, best, regions, least, complete)
+
+
+def _never_holds(problem: Problem, region: Region) -> bool:
+    """Whether no locators of a region, with clamps anywhere, can hold what they have to within the limits of these."""
+    if problem.pushing_bound is None or not problem.pushing_bound.duties.required:
+        return False
+    return least_bound(problem, problem.pushing_bound, region.pool)[0] == np.inf
+
+
+def _too_many(region: Region, best: Found) -> bool:
+    """Whether a region has no layout with as few clamps as there is."""
+    return best.seats and region.bound > len(best.clamps)
+
+
+def _best_square(problem: Problem, regions: Sequence[Region], seed: int, progress: Progress) -> Found | None:
+    """The best set with clamps square against the faces that the part is to sit on; None where none seats it."""
+    best: Found | None = None
+    for number, region in enumerate(regions[:MOST_REGIONS]):
+        progress(f"square against the faces of way out {number + 1}", 0.0)
+        for locators, clamps in square_sets(problem, region, np.random.default_rng([seed, number])):
+            if problem.cancelled():
+                return best
+            if best is not None and len(clamps) > len(best.clamps):
+                continue
+            found = _as_they_are(problem, region, locators, clamps)
+            if found is not None and (best is None or found.score(problem.objective) < best.score(problem.objective)):
+                best = found
+    return best
+
+
+def _as_they_are(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> Found | None:
+    """A set that is not moved any more; None where it does not seat the part."""
+    pushes = seated(problem, locators, clamps)
+    if pushes is None:
+        return None
+    margin = 0.0
+    if problem.closes is not None:
+        margin = float(margins(problem.closing_rows, np.concatenate([locators, clamps])[None])[0])
+    total = float(pushes.pushes.sum())
+    return Found(_by_face(problem, locators), clamps, region.out, inexactness_of(problem, locators), margin, total)
 
 
 def search_region(problem: Problem, region: Region, seed: int, restarts: int = RESTARTS) -> Outcome:
@@ -118,16 +166,18 @@ def _finished(problem: Problem, region: Region, locators: Indices, clamps: Indic
         locators, clamps, margin = _held(problem, region, locators, clamps)
     preload, holds = 0.0, True
     if problem.pushing is not None:
-        most = len(best.clamps) if best and best.holds and problem.objective[:1] == ("fewest",) else None
+        most = len(best.clamps) if best and best.holds and best.seats and problem.objective[:1] == ("fewest",) else None
         pressed = pressed_clamps(problem, problem.pushing, locators, clamps, most)
         if before_accuracy(problem, "preload") and (pressed.holds or most is None):
             locators, pressed = pressed_together(
                 problem, problem.pushing, problem.passing(region.pool, region.out), locators, pressed
             )
         clamps, margin, preload, holds = pressed.clamps, pressed.margin, pressed.total, pressed.holds
-    return Found(
-        _by_face(problem, locators), clamps, region.out, inexactness_of(problem, locators), margin, preload, holds
-    )
+    error = inexactness_of(problem, locators)
+    found = Found(_by_face(problem, locators), clamps, region.out, error, margin, preload, holds)
+    if not (holds and rubs(problem)) or (best and found.score(problem.objective) >= best.score(problem.objective)):
+        return found
+    return replace(found, seats=seated(problem, locators, clamps) is not None)
 
 
 def _held(problem: Problem, region: Region, locators: Indices, clamps: Indices) -> tuple[Indices, Indices, float]:

@@ -69,7 +69,8 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     """
     limits, steps = problem.limits, start.steps
     complete = outcome.complete and problem.determines
-    if outcome.found is not None and not outcome.found.holds:
+    never = outcome.found is None and outcome.best_preload == np.inf
+    if never or (outcome.found is not None and not outcome.found.holds):
         return _not_held(problem, outcome, bound, start)
     if bound is None:
         reason = "no straight way out leaves enough places for locators that determine the part"
