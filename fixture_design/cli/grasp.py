@@ -19,6 +19,9 @@ from fixture_design.layout import Part, Pose
 if TYPE_CHECKING:
     from fixture_design.grasp import GraspResult, Hand
 
+#: Endings of what --html writes.
+_PAGES = (".html", ".htm", ".png")
+
 _HAND = "Hand file, or a URDF or SDF file (with NAME.hand.yaml beside it, or its fingertips are guessed)."
 _PART = "Part (STL, OBJ, ..., URDF), or a layout whose part it is, where it stands."
 _LOAD = "Force (N), and moment about the centre of mass (N m), on the part: fx,fy,fz or fx,fy,fz,mx,my,mz."
@@ -61,6 +64,8 @@ def grasp(
     held_part = _part(part, scale)
     _check_target(out, (hand, part, read.model, held_part.file))
     _check_target(html, (hand, part, read.model, held_part.file), out)
+    if html is not None and html.suffix.lower() not in _PAGES:
+        raise FileFormatError("pages are HTML, and pictures PNG", source=html, expected="a name with .html or .png")
     with interruptible() as cancelled:
         try:
             if joint or pose is not None:

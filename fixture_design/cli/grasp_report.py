@@ -13,6 +13,7 @@ from fixture_design.layout import Answer
 
 if TYPE_CHECKING:
     from fixture_design.grasp import Grasp, GraspResult, Posture
+    from fixture_design.grasp.weakest import Weakest
 
 #: Regions told before it says "and so many more".
 _REGIONS = 8
@@ -55,18 +56,19 @@ def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
     robust = "" if grasp.robust is None else f", closed at {grasp.robust:.0%} of pose errors"
     yield f"   least weight {grasp.quality.least_weight:.3g}, epsilon {epsilon}{robust}"
     if grasp.weakest is not None:
-        way = ", ".join(f"{value:.2f}" for value in grasp.weakest.direction)
-        force = (
-            f"at least {grasp.weakest.force:.3g} N"
-            if np.isfinite(grasp.weakest.force)
-            else "as much as the drives can do"
-        )
-        alone = " by forces alone, but not all moments" if grasp.closed is Answer.NO else ""
-        yield f"   holds {force} in the worst direction ({way}){alone}"
+        yield f"   {_strength(grasp.weakest, grasp.closed)}"
     if grasp.held is not None:
         torques = ", ".join(f"{name} {value:.3g}" for name, value in grasp.held.torques.items())
         yield f"   holds the load with {torques} (N m, or N of joints that slide)"
     yield from (f"   note: {note}" for note in grasp.notes)
+
+
+def _strength(weakest: Weakest, closed: Answer) -> str:
+    """What is held in the worst direction; where it is not closed, that this goes for forces alone."""
+    way = ", ".join(f"{value + 0.0:.2f}" for value in weakest.direction)
+    force = f"at least {weakest.force:.3g} N" if np.isfinite(weakest.force) else "as much as the drives can do"
+    alone = "; these are forces alone: not all moments are held" if closed is Answer.NO else ""
+    return f"holds {force if weakest.force > 0 else 'no force'} in the worst direction ({way}){alone}"
 
 
 def as_options(posture: Posture) -> str:

@@ -47,7 +47,7 @@ def posed(
         Yes: it is closed, by proof, in nothing's way, and holds the load. No: a link is in the part or the table,
         nothing touches, or the contacts do not close. Undecided: all else; the reason says what.
     """
-    found, notes = touching(posture, part, geometry), posture.model.notes
+    found, notes = touching(posture, part, geometry), (*posture.model.notes, *geometry.notes)
     proven, doubted = _in_the_way(posture, found, table)
     if not (found.layout.elements or found.layout.contacts):
         reason = "; ".join([*proven, *doubted, *found.notes]) or "nothing touches the part"

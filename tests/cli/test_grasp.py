@@ -42,6 +42,14 @@ def test_json_is_all_there_is_on_stdout(cube):
     assert grasp["held"]["torques"]["left_joint"] == pytest.approx(-20.0)
 
 
+def test_json_has_the_moments_of_soft_tips(tmp_path):
+    """Pads on a ball touch it in a patch each: a moment about the line between them is theirs alone."""
+    ball = primitive("sphere")[0].file
+    found = _run(JAW, ball, *AT, "--load", "0,0,0,0.004,0,0", "--json")
+    (grasp,) = json.loads(found.stdout)["grasps"]
+    assert sum(moment[0] for moment in grasp["held"]["moments"].values()) == pytest.approx(-0.004, abs=1e-9)
+
+
 def test_a_layout_brings_its_part(cube, tmp_path):
     _run(JAW, cube, *AT, "-o", tmp_path / "g.yaml")
     assert _run(JAW, tmp_path / "g.yaml", *AT).exit_code == 0
@@ -104,6 +112,7 @@ def test_a_part_too_large_exits_with_3():
         (["--joint", "left_joint=0.02", "--joint", "left_joint=0.03"], "--joint is given twice"),
         (["-o", "no/such/folder/g.yaml"], "folder"),
         (["-o", "g.html", "--html", "./g.html"], "the same file"),
+        (["--html", "page.pdf"], "pages are HTML"),
         (["--table", "nan"], "--table cannot be used"),
     ],
 )

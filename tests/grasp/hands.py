@@ -38,6 +38,7 @@ SHAPES = {
     "sphere": '<sphere radius="0.03"/>',
     "small": '<box size="0.03 0.03 0.03"/>',
     "flat": '<box size="0.06 0.04 0.012"/>',
+    "huge": '<box size="60 60 60"/>',
     "large": '<box size="0.15 0.15 0.15"/>',
 }
 
