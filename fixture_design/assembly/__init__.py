@@ -1,9 +1,9 @@
 """Contact states of two parts and their transitions, from geometry (thesis chapter 3).
 
 Two parts in, a graph out: which contacts they can have, and which can follow which. `contact_geometry` is what the
-method asks of the geometry, `planar` and `spatial` fill it. `sampling` is the modified Monte Carlo method, `completion`
-finds what is beside the states that it finds: one loosening away by the cones (`modes`, `following`), one tightening
-away by motions (`tracing`).
+method asks of the geometry; `planar`, `spatial` and, for round pegs and holes by their true shapes, `round_space` fill
+it. `sampling` is the modified Monte Carlo method, `completion` finds what is beside the states that it finds: one
+loosening away by the cones (`modes`, `following`), one tightening away by motions (`tracing`).
 """
 
 from fixture_design.assembly.assembly import Assembly, AssemblyBody, Region

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
-from fixture_design.assembly.following import follow
+from fixture_design.assembly.following import follow, held
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.sampling import onto
@@ -28,6 +28,9 @@ _SAME_DIGITS = 7
 
 #: Configurations that are gone on from before what they led to is kept: an interrupt loses no more.
 _TOGETHER = 256
+
+#: Where straight motions are looked at [-].
+_LOOKED_AT = (0.03, 0.1, 0.3, 0.6, 1.0)
 
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
@@ -149,5 +152,21 @@ def _padded(touching: np.ndarray) -> np.ndarray:
 
 def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
     geometry = known.geometry
-    pairs = zip(states_of(geometry, tight.touching), states_of(geometry, loose.touching), strict=True)
+    pairs = list(zip(states_of(geometry, tight.touching), states_of(geometry, loose.touching), strict=True))
+    if geometry.ending.any():
+        fresh = [set(a) > set(b) and (a, b) not in known.transitions for a, b in pairs]
+        rows = np.flatnonzero(fresh)
+        rows = rows[_straight(geometry, tight[rows], loose[rows])]
+        tight, loose, pairs = tight[rows], loose[rows], [pairs[row] for row in rows]
     known.connect(pairs, tight.q, geometry.between(tight.q, loose.q))
+
+
+def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.ndarray:
+    """Whether straight motions stay in the looser state: where circles roll, contacts may leave a feature."""
+    way, kept = geometry.between(tight.q, loose.q), _padded(loose.touching)
+    good = np.ones(len(tight), dtype=bool)
+    for share in _LOOKED_AT:
+        q, arrived = held(geometry, geometry.moved(tight.q, share * way), kept)
+        found = sort_configurations(geometry, q)
+        good &= arrived & found.admissible & (found.touching == loose.touching).all(axis=1)
+    return good
