@@ -16,7 +16,7 @@ from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, states_of
+from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
 
@@ -80,7 +80,7 @@ def loosen(known: KnownStates, start: Sorted) -> Sorted:
         return start[rows]
     followed = follow(geometry, start.q[rows], displacements, kept)
     rows = rows[followed.rows]
-    _connect(known, start[rows], followed.ends)
+    known.connect(start[rows], followed.ends)
     return followed.ends
 
 
@@ -94,7 +94,7 @@ def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sort
     wished = np.concatenate([np.broadcast_to(directions, (len(start), *directions.shape)), drawn], axis=1)
     stopped = trace(geometry, start[rows], _padded(start.touching)[rows], wished.reshape(len(rows), -1))
     before = sort_configurations(geometry, stopped.before)
-    _connect(known, stopped.ends, before)
+    known.connect(stopped.ends, before)
     return stopped.ends
 
 
@@ -141,9 +141,3 @@ def _padded(touching: np.ndarray) -> np.ndarray:
     width = max(int(touching.sum(axis=1).max(initial=0)), 1)
     order = np.argsort(~touching, axis=1, kind="stable")[:, :width]
     return np.where(np.take_along_axis(touching, order, axis=1), order, -1)
-
-
-def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
-    geometry = known.geometry
-    pairs = zip(states_of(geometry, tight.touching), states_of(geometry, loose.touching), strict=True)
-    known.connect(pairs, tight.q, geometry.between(tight.q, loose.q))

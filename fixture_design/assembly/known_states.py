@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +9,8 @@ import numpy as np
 from fixture_design.arrays import Indices, Vector
 from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
-from fixture_design.assembly.sorting import Sorted, State, joined, state_of
+from fixture_design.assembly.sorting import Sorted, State, alike, joined, state_of, states_of
+from fixture_design.assembly.symmetry import Symmetries
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +31,13 @@ class KnownStates:
     """States and transitions while they are being found.
 
     Attributes:
+        symmetries: only one state of each orbit is kept, and one transition: the others are their images.
         most: samples that are kept of a state.
         samples: of each state; transitions: (state with more contacts, state with fewer) -> witness.
     """
 
     geometry: ContactGeometry
+    symmetries: Symmetries
     most: int
     samples: dict[State, Sorted] = field(default_factory=dict)
     transitions: dict[tuple[State, State], Transition] = field(default_factory=dict)
@@ -46,6 +48,7 @@ class KnownStates:
         A sample is kept while its state has too few, if it is away from those there are.
         """
         kept, before = [], len(self.samples)
+        found = self.representatives(found)
         for state, rows in self.by_state(found).items():
             fresh = self._away(state, found[rows])
             if len(fresh):
@@ -56,19 +59,38 @@ class KnownStates:
 
     def by_state(self, found: Sorted) -> dict[State, Indices]:
         """Rows of the clear configurations, by state."""
-        patterns, places = np.unique(found.touching, axis=0, return_inverse=True)
+        if not len(found):
+            return {}
+        first, places = alike(found.touching)
+        order = np.argsort(places, kind="stable")
         rows: dict[State, list[int]] = {}
-        for k, pattern in enumerate(patterns):
-            mine = np.flatnonzero((places.ravel() == k) & found.clear)
+        for k, mine in zip(first, np.split(order, np.cumsum(np.bincount(places))[:-1]), strict=True):
+            mine = mine[found.clear[mine]]
             if mine.size:
-                rows.setdefault(state_of(self.geometry, pattern), []).extend(mine.tolist())
+                rows.setdefault(state_of(self.geometry, found.touching[k]), []).extend(mine.tolist())
         return {state: np.array(sorted(found_rows)) for state, found_rows in rows.items()}
 
-    def connect(self, states: Iterable[tuple[State, State]], q: np.ndarray, displacements: np.ndarray) -> None:
+    def connect(self, tight: Sorted, loose: Sorted) -> None:
         """Takes transitions in (more contacts first); of several witnesses the first stays."""
-        for pair, at, displacement in zip(states, q, displacements, strict=True):
+        if not len(tight):
+            return
+        both = np.concatenate([tight.touching, loose.touching], axis=1)
+        first, _ = alike(both)
+        tight, loose = tight[first], loose[first]
+        elements = self.symmetries.to_representatives(tight.touching, loose.touching)
+        displacements = self.symmetries.displaced(elements, self.geometry.between(tight.q, loose.q))
+        tight, loose = self.symmetries.of(elements, tight), self.symmetries.of(elements, loose)
+        states = (states_of(self.geometry, found.touching) for found in (tight, loose))
+        for pair, at, displacement in zip(zip(*states, strict=True), tight.q, displacements, strict=True):
             if set(pair[0]) > set(pair[1]) and pair not in self.transitions:
                 self.transitions[pair] = Transition(at, displacement)
+
+    def representatives(self, found: Sorted) -> Sorted:
+        """The configurations' images in the representatives of their states' orbits."""
+        if len(self.symmetries) == 1 or not len(found):
+            return found
+        first, places = alike(found.touching)
+        return self.symmetries.of(self.symmetries.to_representatives(found.touching[first])[places], found)
 
     def _away(self, state: State, found: Sorted) -> Sorted:
         """The configurations farthest from the samples and each other, as many as there is room for."""
