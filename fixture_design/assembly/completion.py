@@ -15,8 +15,10 @@ from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
+from fixture_design.assembly.point_motions import point_motions
 from fixture_design.assembly.sampling import onto
 from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations
+from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
 
@@ -125,7 +127,11 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         pairs = np.flatnonzero(touching)
         if not pairs.size:
             continue
-        for mode in contact_modes(vectors[k, pairs], ends[k, pairs], geometry.free, turns):
+        at_end = ends[k, pairs]
+        points = None
+        if isinstance(geometry, SpatialGeometry):
+            points = point_motions(geometry, start.q[k], pairs[at_end], vectors[k, pairs[at_end], :3])
+        for mode in contact_modes(vectors[k, pairs], at_end, geometry.free, turns, points):
             rows.append(k)
             displacements.append(mode.displacement)
             kept.append(pairs[mode.kept])

@@ -8,13 +8,14 @@ both signs occur: the cones of all sign patterns together cover all motions, als
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Rows, Vector, Weights
+from fixture_design.assembly.point_motions import PointMotions
 from fixture_design.cones import convert_rows
 from fixture_design.cones.kernel import faces_of
 from fixture_design.errors import UnsupportedError
@@ -23,8 +24,8 @@ from fixture_design.tolerances import DEPENDENT, Tolerances
 #: Solved configurations carry the rounding of the equations, not that of input data.
 _ROUNDED = Tolerances(tie=1e-7)
 
-#: More independent contacts at facets' ends than this are not combined in all their signs.
-MOST_SIGNS = 10
+#: Contacts at facets' ends are not combined in all their signs if there are more choices than 2 to this.
+MOST_SIGNS = 13
 
 #: More contacts that depend on each other than this are not dropped in all combinations.
 _MOST_DROPPED = 6
@@ -43,31 +44,32 @@ class Mode:
     kept: Mask
 
 
-def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> list[Mode]:
+def contact_modes(
+    face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask, points: Sequence[PointMotions] | None = None
+) -> list[Mode]:
     """All modes of contacts with these face vectors.
 
     Args:
         face_vectors: shape (m, d), with angles multiplied by a length.
         at_end: shape (m,), contacts whose apex is at the end of its facet.
         free: shape (d,), displacements that are allowed.  turns: shape (d,), those that are angles.
+        points: what each point with contacts at ends admits, by places among these contacts; None: anything.
 
     Where the face vectors of contacts that a motion keeps depend on each other, the first order does not tell whether
     it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then.
 
     Raises:
-        UnsupportedError: more than `MOST_SIGNS` independent contacts at ends of facets.
+        UnsupportedError: more than 2 ^ `MOST_SIGNS` choices of signs.
     """
     rows = face_vectors[:, free]
     rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
-    lines, sides = _lines(rows[at_end])
-    count = int(lines.max(initial=-1)) + 1
-    if count > MOST_SIGNS:
-        raise UnsupportedError(f"{count} contacts are at ends of facets at once, more than {MOST_SIGNS}")
     modes = _Modes(rows, free)
-    for signs in product((1.0, -1.0), repeat=count):
+    for signs in _signs(rows[at_end], points):
+        turned = signs != 0
         signed = rows.copy()
-        signed[at_end] *= (np.array(signs)[lines] * sides)[:, None]
-        for displacement, kept in _of_one_cone(signed, modes, turns[free]):
+        signed[at_end] *= np.where(turned, -signs, 1.0)[:, None]
+        equal = np.flatnonzero(at_end)[~turned]
+        for displacement, kept in _of_one_cone(signed, modes, turns[free], equal):
             modes.add(displacement, kept)
     return list(modes.found.values())
 
@@ -107,6 +109,29 @@ class _Modes:
         return self._depend[key]
 
 
+def _signs(rows: Rows, points: Sequence[PointMotions] | None) -> Iterator[np.ndarray]:
+    """The signs of d . dq of contacts at ends of facets for each of the cones; 0: it has to be zero."""
+    if points is None:
+        lines, sides = _lines(rows)
+        count = int(lines.max(initial=-1)) + 1
+        _refuse_too_many(float(2**count))
+        yield from (np.array(signs)[lines] * sides for signs in product((-1.0, 1.0), repeat=count))
+        return
+    _refuse_too_many(float(np.prod([len(point.signs) for point in points])))
+    for chosen in product(*(point.signs for point in points)):
+        signs = np.zeros(len(rows))
+        for point, own in zip(points, chosen, strict=True):
+            signs[point.pairs] = own
+        yield signs
+
+
+def _refuse_too_many(choices: float) -> None:
+    if choices > 2**MOST_SIGNS:
+        raise UnsupportedError(
+            f"{choices:.0f} choices of signs of contacts at ends of facets at once, more than {2**MOST_SIGNS}"
+        )
+
+
 def _lines(rows: Rows) -> tuple[Indices, Weights]:
     """For each row the number of its line and its side of it: rows along one line have their signs together."""
     lines, sides = np.zeros(len(rows), dtype=int), np.ones(len(rows))
@@ -121,8 +146,8 @@ def _lines(rows: Rows) -> tuple[Indices, Weights]:
     return lines, sides
 
 
-def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask) -> Iterator[tuple[Vector, Mask]]:
-    cone = convert_rows(signed, np.zeros((0, signed.shape[1])), _ROUNDED)
+def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask, equal: Indices) -> Iterator[tuple[Vector, Mask]]:
+    cone = convert_rows(signed, signed[equal], _ROUNDED)
     faces = faces_of(len(cone.lines), cone.vectors, cone.incidence, signed.shape[1])
     along = [*cone.lines, *-cone.lines]
     for kept, witness in zip(faces.rows, faces.witnesses, strict=True):
