@@ -7,17 +7,18 @@ contact equation (the states one tightening away), until nothing new appears.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from fixture_design.arrays import Indices
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.following import follow
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.point_motions import point_motions
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations
+from fixture_design.assembly.sorting import Sorted, State, alike, joined, sort_configurations
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
@@ -75,9 +76,35 @@ def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
 
 
 def loosen(known: KnownStates, start: Sorted) -> Sorted:
-    """Follows all contact modes of the configurations; notes the transitions, returns where they lead."""
+    """Follows contact modes of the configurations; notes the transitions, returns where they lead.
+
+    One configuration of each state after the other: what led from one to a state is not followed again from another.
+    """
+    ends = [start[np.zeros(0, dtype=int)]]
+    for rows in _one_of_each(known.representatives(start).touching):
+        ends.append(_loosened(known, start[rows]))
+    return joined(ends)
+
+
+def _one_of_each(touching: np.ndarray) -> Iterator[Indices]:
+    """The first of each state, the second of each, and so on."""
+    if not len(touching):
+        return
+    _, places = alike(touching)
+    order = np.argsort(places, kind="stable")
+    firsts = np.searchsorted(places[order], places[order])
+    number = np.arange(len(order)) - firsts
+    for k in range(int(number.max()) + 1):
+        yield np.sort(order[number == k])
+
+
+def _loosened(known: KnownStates, start: Sorted) -> Sorted:
     geometry = known.geometry
     rows, displacements, kept = _modes(geometry, start)
+    touching = np.zeros((len(rows), len(geometry.names) + 1), dtype=bool)
+    np.put_along_axis(touching, kept, True, axis=1)
+    fresh = ~known.linked(start.touching[rows], touching[:, :-1])
+    rows, displacements, kept = rows[fresh], displacements[fresh], kept[fresh]
     if not rows.size:
         return start[rows]
     followed = follow(geometry, start.q[rows], displacements, kept)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Vector
+from fixture_design.arrays import Indices, Mask, Vector
 from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.sorting import Sorted, State, alike, joined, state_of, states_of
@@ -41,6 +41,7 @@ class KnownStates:
     most: int
     samples: dict[State, Sorted] = field(default_factory=dict)
     transitions: dict[tuple[State, State], Transition] = field(default_factory=dict)
+    _linked: set[bytes] = field(default_factory=set)
 
     def add(self, found: Sorted) -> tuple[Sorted, int]:
         """Takes clear configurations in; returns those that are kept as samples, and how many states are new.
@@ -84,6 +85,13 @@ class KnownStates:
         for pair, at, displacement in zip(zip(*states, strict=True), tight.q, displacements, strict=True):
             if set(pair[0]) > set(pair[1]) and pair not in self.transitions:
                 self.transitions[pair] = Transition(at, displacement)
+        self._linked.update(_keys(tight.touching, loose.touching))
+
+    def linked(self, tight: np.ndarray, loose: np.ndarray) -> Mask:
+        """Whether transitions between patterns (n, P), or images of them, are known."""
+        elements = self.symmetries.to_representatives(tight, loose)
+        images = (self.symmetries.permuted(elements, touching) for touching in (tight, loose))
+        return np.array([key in self._linked for key in _keys(*images)], dtype=bool)
 
     def representatives(self, found: Sorted) -> Sorted:
         """The configurations' images in the representatives of their states' orbits."""
@@ -113,6 +121,10 @@ class KnownStates:
     def _distances(self, q: Configuration, others: np.ndarray) -> np.ndarray:
         away = self.geometry.between(np.repeat(q[None], len(others), axis=0), others)
         return np.linalg.norm(away * weights(self.geometry), axis=1)
+
+
+def _keys(tight: np.ndarray, loose: np.ndarray) -> list[bytes]:
+    return [row.tobytes() for row in np.packbits(np.concatenate([tight, loose], axis=1), axis=1)]
 
 
 #: Samples this near to each other, relative to the size, are one [-].

@@ -9,7 +9,7 @@ both signs occur: the cones of all sign patterns together cover all motions, als
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -56,14 +56,15 @@ def contact_modes(
         points: what each point with contacts at ends admits, by places among these contacts; None: anything.
 
     Where the face vectors of contacts that a motion keeps depend on each other, the first order does not tell whether
-    it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then.
+    it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then, if each point may keep
+    what is left of its own.
 
     Raises:
         UnsupportedError: more than 2 ^ `MOST_SIGNS` choices of signs.
     """
     rows = face_vectors[:, free]
     rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
-    modes = _Modes(rows, free)
+    modes = _Modes(rows, free, _placed(points or (), np.flatnonzero(at_end)))
     for signs in _signs(rows[at_end], points):
         turned = signs != 0
         signed = rows.copy()
@@ -77,8 +78,8 @@ def contact_modes(
 class _Modes:
     """The modes found so far, each once: those on the border of two sign patterns come from both."""
 
-    def __init__(self, rows: Rows, free: Mask) -> None:
-        self.rows, self.free = rows, free
+    def __init__(self, rows: Rows, free: Mask, points: Sequence[PointMotions]) -> None:
+        self.rows, self.free, self.points = rows, free, points
         self.found: dict[bytes, Mode] = {}
         self._depend: dict[bytes, bool] = {}
 
@@ -93,7 +94,8 @@ class _Modes:
             return
         if self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
             for fewer in _with_dropped(kept):
-                self._new(pattern, direction, Mode(full, fewer))
+                if all(point.may_keep(fewer[point.pairs]) for point in self.points):
+                    self._new(pattern, direction, Mode(full, fewer))
 
     def _new(self, pattern: np.ndarray, direction: bytes, mode: Mode) -> bool:
         # where contacts depend on each other, the first order does not tell all motions apart
@@ -107,6 +109,11 @@ class _Modes:
         if key not in self._depend:
             self._depend[key] = _dependent(self.rows[kept])
         return self._depend[key]
+
+
+def _placed(points: Sequence[PointMotions], places: Indices) -> list[PointMotions]:
+    """With places among all contacts, not only those at ends."""
+    return [replace(point, pairs=places[point.pairs]) for point in points]
 
 
 def _signs(rows: Rows, points: Sequence[PointMotions] | None) -> Iterator[np.ndarray]:

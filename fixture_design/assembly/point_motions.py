@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Point, Points
+from fixture_design.arrays import Indices, Mask, Point, Points
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.spatial_contacts import tangent_clauses
 from fixture_design.contacts.contact import Clause
@@ -26,10 +26,26 @@ class PointMotions:
     Attributes:
         pairs: that touch there, shape (m,), as places among those given.
         signs: of n . v for each face and pair, shape (k, m): -1, 0 or 1.
+        normals: unit, shape (m, 3).
     """
 
     pairs: Indices
     signs: np.ndarray
+    normals: Points
+
+    def may_keep(self, kept: Mask) -> bool:
+        """Whether some of the pairs may stay without the others.
+
+        What keeps two different normals still on a line, or at rest, keeps all other pairs along it: an apex on two
+        facets stays on their common edge, and so do its own edges. Normals along each other turn apart, any of them.
+        """
+        if not kept.any() or kept.all():
+            return True
+        _, values, right = np.linalg.svd(self.normals[kept], full_matrices=False)
+        spanned = right[values > DEPENDENT]
+        others = self.normals[~kept]
+        within = np.linalg.norm(others - others @ spanned.T @ spanned, axis=1) <= DEPENDENT
+        return len(spanned) < 2 or not within.any()
 
 
 def point_motions(geometry: SpatialGeometry, q: np.ndarray, pairs: Indices, normals: Points) -> list[PointMotions]:
@@ -50,7 +66,7 @@ def point_motions(geometry: SpatialGeometry, q: np.ndarray, pairs: Indices, norm
         if clauses is not None:
             kept = _admitted(witnesses, clauses)
             signs = signs[kept]
-        found.append(PointMotions(own, _largest(signs)))
+        found.append(PointMotions(own, _largest(signs), units))
     return found
 
 
