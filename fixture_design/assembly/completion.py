@@ -36,9 +36,14 @@ _TOGETHER = 256
 _MOST_GENERATIONS = 40
 
 
-def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[str], None] = lambda _: None) -> None:
-    """Goes on from all samples until nothing new appears: no new state, and no room for more samples."""
-    fresh = joined(list(known.samples.values()))
+def complete(
+    known: KnownStates, fresh: Sorted, rng: np.random.Generator, progress: Callable[[str], None] = lambda _: None
+) -> None:
+    """Goes on from samples until nothing new appears: no new state, and no room for more samples.
+
+    Args:
+        fresh: samples from which was not gone on yet.
+    """
     seen: set[State] = set()
     for _ in range(_MOST_GENERATIONS):
         start = joined([fresh, _aligned(known, seen)])

@@ -78,14 +78,14 @@ def _search(
 ) -> None:
     start = known.representatives(sample(known.geometry, rng))
     counts.update({state: len(rows) for state, rows in known.by_state(start).items()})
-    known.add(start)
+    fresh, _ = known.add(start)
     progress(f"{len(start)} of the random starts ended in {len(counts)} states")
-    complete(known, rng, progress)
+    complete(known, fresh, rng, progress)
     known.most = max(samples, _EXPANDED)
     fresh, new = known.add(_more(known, rng))
-    _, beside = known.add(loosen(known, fresh))
+    more, beside = known.add(loosen(known, fresh))
     if new or beside:
-        complete(known, rng, progress)
+        complete(known, joined([fresh, more]), rng, progress)
 
 
 def _more(known: KnownStates, rng: np.random.Generator) -> Sorted:
@@ -109,10 +109,11 @@ def _graph(assembly: Assembly, known: KnownStates, rest: Unseen, seed: int, fini
     first = 1 if not ordered or ordered[0] == () else 2
     ids = {contacts: f"N{number}" for number, contacts in enumerate(ordered, start=first)}
     states = tuple(_state(geometry, ids[contacts], contacts, known.samples[contacts]) for contacts in ordered)
+    between = [pair for pair in known.transitions if pair[0] in ids and pair[1] in ids]
+    q = np.array([known.transitions[pair].q for pair in between]).reshape(len(between), -1)
     edges = [
-        StateTransition(ids[tight], ids[loose], geometry.canonical(found.q[None])[0], found.displacement)
-        for (tight, loose), found in known.transitions.items()
-        if tight in ids and loose in ids
+        StateTransition(ids[pair[0]], ids[pair[1]], at, known.transitions[pair].displacement)
+        for pair, at in zip(between, geometry.canonical(q) if between else q, strict=True)
     ]
     edges.sort(key=lambda edge: (int(edge.loose[1:]), int(edge.tight[1:])))
     return ContactStateGraph(assembly, states, tuple(edges), rest, seed, finished)

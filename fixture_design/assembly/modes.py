@@ -82,6 +82,8 @@ class _Modes:
         self.rows, self.free, self.points = rows, free, points
         self.found: dict[bytes, Mode] = {}
         self._depend: dict[bytes, bool] = {}
+        self._circuits: dict[bytes, Indices] = {}
+        self._may: dict[tuple[int, bytes], bool] = {}
 
     def add(self, displacement: Vector, kept: Mask) -> None:
         """Takes a mode in, and where its contacts depend on each other those with some of them dropped."""
@@ -93,8 +95,8 @@ class _Modes:
         if not self._new(pattern, direction, Mode(full, kept)):
             return
         if self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
-            for fewer in _with_dropped(kept):
-                if all(point.may_keep(fewer[point.pairs]) for point in self.points):
+            for fewer in _with_dropped(kept, self._in_circuits(kept)):
+                if self._possible(fewer):
                     self._new(pattern, direction, Mode(full, fewer))
 
     def _new(self, pattern: np.ndarray, direction: bytes, mode: Mode) -> bool:
@@ -102,6 +104,26 @@ class _Modes:
         doubtful = not pattern.any() or self.dependent(mode.kept)
         key = pattern.tobytes() + np.packbits(mode.kept).tobytes() + (direction if doubtful else b"")
         return self.found.setdefault(key, mode) is mode
+
+    def _possible(self, kept: Mask) -> bool:
+        """Whether each point may keep what is left of its own contacts."""
+        for number, point in enumerate(self.points):
+            own = kept[point.pairs]
+            key = number, own.tobytes()
+            if key not in self._may:
+                self._may[key] = point.may_keep(own)
+            if not self._may[key]:
+                return False
+        return True
+
+    def _in_circuits(self, kept: Mask) -> Indices:
+        """Contacts kept whose face vectors depend on others': any other can be left alone by the first order."""
+        key = kept.tobytes()
+        if key not in self._circuits:
+            left, values, _ = np.linalg.svd(self.rows[kept])
+            rank = int(np.count_nonzero(values > DEPENDENT))
+            self._circuits[key] = np.flatnonzero(kept)[(np.abs(left[:, rank:]) > DEPENDENT).any(axis=1)]
+        return self._circuits[key]
 
     def dependent(self, kept: Mask) -> bool:
         """Whether the face vectors of some contacts depend on each other."""
@@ -172,8 +194,7 @@ def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
     return least / np.linalg.norm(least)
 
 
-def _with_dropped(kept: Mask) -> Iterator[Mask]:
-    places = np.flatnonzero(kept)
+def _with_dropped(kept: Mask, places: Indices) -> Iterator[Mask]:
     for choice in product((False, True), repeat=len(places)):
         if not all(choice):
             fewer = kept.copy()
