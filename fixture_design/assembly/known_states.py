@@ -65,8 +65,8 @@ class KnownStates:
         first, places = alike(found.touching)
         order = np.argsort(places, kind="stable")
         rows: dict[State, list[int]] = {}
-        for k, mine in zip(first, np.split(order, np.cumsum(np.bincount(places))[:-1]), strict=True):
-            mine = mine[found.clear[mine]]
+        for k, alike_ones in zip(first, np.split(order, np.cumsum(np.bincount(places))[:-1]), strict=True):
+            mine = alike_ones[found.clear[alike_ones]]
             if mine.size:
                 rows.setdefault(state_of(self.geometry, found.touching[k]), []).extend(mine.tolist())
         return {state: np.array(sorted(found_rows)) for state, found_rows in rows.items()}

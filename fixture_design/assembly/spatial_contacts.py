@@ -50,7 +50,9 @@ def spatial_contacts(geometry: SpatialGeometry, configuration: Vector) -> tuple[
     return tuple(contacts)
 
 
-def tangent_clauses(geometry: SpatialGeometry, q: np.ndarray, arm: np.ndarray, near: float) -> tuple[Clause, ...] | None:
+def tangent_clauses(
+    geometry: SpatialGeometry, q: np.ndarray, arm: np.ndarray, near: float
+) -> tuple[Clause, ...] | None:
     """The clauses of both bodies' tangent cones in one point, from the moving body's origin; None if they overlap."""
     R, position = rotations.matrices(q[:, 3:])[0], q[0, :3]
     mine = [piece @ R.T for piece in _cones(geometry.moving.pieces, arm @ R, near)]

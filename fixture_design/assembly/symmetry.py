@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
-from fixture_design.arrays import Indices, Points
+from fixture_design.arrays import Indices, Mask, Points
 from fixture_design.assembly import rotations
 from fixture_design.assembly.sorting import Sorted
 
@@ -35,7 +35,7 @@ class Symmetries:
     after: Float[np.ndarray, "g 4"]
     matrices: Float[np.ndarray, "g 3 3"]
     shifts: Points
-    mirrored: Bool[np.ndarray, "g"]
+    mirrored: Mask
     _keys: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -80,8 +80,8 @@ class Symmetries:
         """Sorted configurations, each by its element: nothing is sorted again."""
         if len(self) == 1:
             return found
-        tables = [self.permuted(elements, table) for table in (found.touching, found.distances)]
-        return Sorted(self.moved(elements, found.q), *tables, found.admissible, found.clear)
+        touching, distances = (self.permuted(elements, table) for table in (found.touching, found.distances))
+        return Sorted(self.moved(elements, found.q), touching, distances, found.admissible, found.clear)
 
     def to_representatives(self, touching: np.ndarray, then: np.ndarray | None = None) -> Indices:
         """For each row of pairs that touch the element that makes the representative of its orbit of it.

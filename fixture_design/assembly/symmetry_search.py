@@ -6,7 +6,7 @@ itself. Every symmetry found is tried on random configurations: distances must b
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import permutations, product
 
@@ -194,7 +194,7 @@ def _onto(
              for e, out in zip(middles, (body.outward @ matrix.T, other.outward), strict=True)]  # fmt: skip
     rows = [
         _matched(ends(body.vertices), other.vertices, near),
-        _matched(*lines, 4 * near),
+        _matched(lines[0], lines[1], 4 * near),
         _facets(body, other, planes, ends, near),
     ]
     known = [row for row in rows if row is not None]
@@ -212,7 +212,13 @@ def _matched(images: np.ndarray, features: np.ndarray, near: float) -> np.ndarra
     return rows if apart.min(axis=1).max() <= near and len(set(rows.tolist())) == len(rows) else None
 
 
-def _facets(body: Polyhedron, other: Polyhedron, planes, ends, near: float) -> np.ndarray | None:
+def _facets(
+    body: Polyhedron,
+    other: Polyhedron,
+    planes: tuple[np.ndarray, np.ndarray],
+    ends: Callable[[np.ndarray], np.ndarray],
+    near: float,
+) -> np.ndarray | None:
     """Facets in one plane are told apart by their borders."""
     if len(body.normals) != len(other.normals):
         return None
