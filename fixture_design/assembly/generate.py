@@ -110,10 +110,10 @@ def _graph(assembly: Assembly, known: KnownStates, rest: Unseen, seed: int, fini
     ids = {contacts: f"N{number}" for number, contacts in enumerate(ordered, start=first)}
     states = tuple(_state(geometry, ids[contacts], contacts, known.samples[contacts]) for contacts in ordered)
     between = [pair for pair in known.transitions if pair[0] in ids and pair[1] in ids]
-    q = np.array([known.transitions[pair].q for pair in between]).reshape(len(between), -1)
+    q = geometry.canonical(np.array([known.transitions[pair].q for pair in between])) if between else []
     edges = [
         StateTransition(ids[pair[0]], ids[pair[1]], at, known.transitions[pair].displacement)
-        for pair, at in zip(between, geometry.canonical(q) if between else q, strict=True)
+        for pair, at in zip(between, q, strict=True)
     ]
     edges.sort(key=lambda edge: (int(edge.loose[1:]), int(edge.tight[1:])))
     return ContactStateGraph(assembly, states, tuple(edges), rest, seed, finished)
