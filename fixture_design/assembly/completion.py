@@ -56,7 +56,8 @@ def complete(
             kept.append(known.add(joined(found))[0])
             left = len(start) - first - len(some)
             more = f", {left} configurations to go on from" if left else ""
-            progress(f"{len(known.samples)} states, {len(known.transitions)} transitions{more}")
+            images = " up to symmetry" if len(known.symmetries) > 1 else ""
+            progress(f"{len(known.samples)} states, {len(known.transitions)} transitions{images}{more}")
         fresh = joined(kept)
 
 
