@@ -3,7 +3,8 @@
 Two parts in, a graph out: which contacts they can have, and which can follow which. `contact_geometry` is what the
 method asks of the geometry; `planar`, `spatial` and, for round pegs and holes by their true shapes, `round_space` fill
 it. `sampling` is the modified Monte Carlo method, `completion` finds what is beside the states that it finds: one
-loosening away by the cones (`modes`, `following`), one tightening away by motions (`tracing`).
+loosening away by the cones (`modes`, `following`), one tightening away by motions (`tracing`). Where parts and region
+are symmetric (`symmetry_search`), one state of each orbit is searched, and `unfolding` writes down the others.
 """
 
 from fixture_design.assembly.assembly import Assembly, AssemblyBody, Region

@@ -7,16 +7,19 @@ contact equation (the states one tightening away), until nothing new appears.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from fixture_design.arrays import Indices
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.following import follow, held
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
+from fixture_design.assembly.point_motions import point_motions
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, joined, sort_configurations, states_of
+from fixture_design.assembly.sorting import Sorted, State, alike, joined, sort_configurations
+from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
 
@@ -36,9 +39,14 @@ _LOOKED_AT = (0.03, 0.1, 0.3, 0.6, 1.0)
 _MOST_GENERATIONS = 40
 
 
-def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[str], None] = lambda _: None) -> None:
-    """Goes on from all samples until nothing new appears: no new state, and no room for more samples."""
-    fresh = joined(list(known.samples.values()))
+def complete(
+    known: KnownStates, fresh: Sorted, rng: np.random.Generator, progress: Callable[[str], None] = lambda _: None
+) -> None:
+    """Goes on from samples until nothing new appears: no new state, and no room for more samples.
+
+    Args:
+        fresh: samples from which was not gone on yet.
+    """
     seen: set[State] = set()
     for _ in range(_MOST_GENERATIONS):
         start = joined([fresh, _aligned(known, seen)])
@@ -51,7 +59,8 @@ def complete(known: KnownStates, rng: np.random.Generator, progress: Callable[[s
             kept.append(known.add(joined(found))[0])
             left = len(start) - first - len(some)
             more = f", {left} configurations to go on from" if left else ""
-            progress(f"{len(known.samples)} states, {len(known.transitions)} transitions{more}")
+            images = " up to symmetry" if len(known.symmetries) > 1 else ""
+            progress(f"{len(known.samples)} states, {len(known.transitions)} transitions{images}{more}")
         fresh = joined(kept)
 
 
@@ -76,9 +85,35 @@ def _aligned(known: KnownStates, seen: set[State]) -> Sorted:
 
 
 def loosen(known: KnownStates, start: Sorted) -> Sorted:
-    """Follows all contact modes of the configurations; notes the transitions, returns where they lead."""
+    """Follows contact modes of the configurations; notes the transitions, returns where they lead.
+
+    One configuration of each state after the other: what led from one to a state is not followed again from another.
+    """
+    ends = [start[np.zeros(0, dtype=int)]]
+    for rows in _one_of_each(known.representatives(start).touching):
+        ends.append(_loosened(known, start[rows]))
+    return joined(ends)
+
+
+def _one_of_each(touching: np.ndarray) -> Iterator[Indices]:
+    """The first of each state, the second of each, and so on."""
+    if not len(touching):
+        return
+    _, places = alike(touching)
+    order = np.argsort(places, kind="stable")
+    firsts = np.searchsorted(places[order], places[order])
+    number = np.arange(len(order)) - firsts
+    for k in range(int(number.max()) + 1):
+        yield np.sort(order[number == k])
+
+
+def _loosened(known: KnownStates, start: Sorted) -> Sorted:
     geometry = known.geometry
     rows, displacements, kept = _modes(geometry, start)
+    touching = np.zeros((len(rows), len(geometry.names) + 1), dtype=bool)
+    np.put_along_axis(touching, kept, True, axis=1)
+    fresh = ~known.linked(start.touching[rows], touching[:, :-1])
+    rows, displacements, kept = rows[fresh], displacements[fresh], kept[fresh]
     if not rows.size:
         return start[rows]
     followed = follow(geometry, start.q[rows], displacements, kept)
@@ -131,8 +166,12 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         pairs = np.flatnonzero(touching)
         if not pairs.size:
             continue
-        found = geometry.rows(start.q[k], pairs, vectors[k, pairs], ends[k, pairs])
-        for mode in contact_modes(found.vectors, found.at_end, geometry.free, turns):
+        at_end = ends[k, pairs]
+        points = None
+        if isinstance(geometry, SpatialGeometry):
+            points = point_motions(geometry, start.q[k], pairs[at_end], vectors[k, pairs[at_end], :3])
+        found = geometry.rows(start.q[k], pairs, vectors[k, pairs], at_end)
+        for mode in contact_modes(found.vectors, found.at_end, geometry.free, turns, points):
             rows.append(k)
             displacements.append(mode.displacement)
             kept.append(pairs[found.pairs_kept(mode.kept)])
@@ -151,14 +190,13 @@ def _padded(touching: np.ndarray) -> np.ndarray:
 
 
 def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
-    geometry = known.geometry
-    pairs = list(zip(states_of(geometry, tight.touching), states_of(geometry, loose.touching), strict=True))
-    if geometry.ending.any():
-        fresh = [set(a) > set(b) and (a, b) not in known.transitions for a, b in pairs]
-        rows = np.flatnonzero(fresh)
-        rows = rows[_straight(geometry, tight[rows], loose[rows])]
-        tight, loose, pairs = tight[rows], loose[rows], [pairs[row] for row in rows]
-    known.connect(pairs, tight.q, geometry.between(tight.q, loose.q))
+    """Transitions of which the straight motion, contacts held, stays in the looser state."""
+    if known.geometry.ending.any() and len(tight):
+        more = (tight.touching & ~loose.touching).any(axis=1) & ~(loose.touching & ~tight.touching).any(axis=1)
+        rows = np.flatnonzero(more & ~known.linked(tight.touching, loose.touching))
+        rows = rows[_straight(known.geometry, tight[rows], loose[rows])]
+        tight, loose = tight[rows], loose[rows]
+    known.connect(tight, loose)
 
 
 def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.ndarray:

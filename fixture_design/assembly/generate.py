@@ -14,6 +14,9 @@ from fixture_design.assembly.graph import ContactState, ContactStateGraph, State
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.sampling import onto, sample
 from fixture_design.assembly.sorting import Sorted, State, joined
+from fixture_design.assembly.symmetry import Symmetries
+from fixture_design.assembly.symmetry_search import symmetries_of
+from fixture_design.assembly.unfolding import unfolded
 from fixture_design.assembly.unseen import Unseen, unseen
 from fixture_design.tolerances import APART
 
@@ -28,7 +31,12 @@ _NEARBY = 0.2
 
 
 def state_graph(
-    assembly: Assembly, *, seed: int = 0, samples: int = 10, progress: Callable[[str], None] = lambda _: None
+    assembly: Assembly,
+    *,
+    seed: int = 0,
+    samples: int = 10,
+    symmetric: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
 ) -> ContactStateGraph:
     """All contact states of an assembly and their direct transitions (chapter 3).
 
@@ -37,6 +45,8 @@ def state_graph(
     Args:
         seed: of the random starts; the same seed gives the same graph.
         samples: configurations kept of a state, at most.
+        symmetric: whether of states that are images of each other by symmetries of both parts and the region one is
+            searched, and the others are written down from it.
         progress: is told in words how far the search is.
 
     An interrupt (Ctrl-C) ends the search: the graph has what was found, and is not `complete`.
@@ -46,7 +56,8 @@ def state_graph(
         UnsupportedError: shapes that this version has no contact pairs for.
     """
     geometry = geometry_of(assembly)
-    known = KnownStates(geometry, _EXPANDED)
+    symmetries = symmetries_of(geometry) if symmetric else Symmetries.none(len(geometry.names))
+    known = KnownStates(geometry, symmetries, _EXPANDED)
     counts: dict[State, int] = {}
     finished = False
     try:
@@ -54,6 +65,7 @@ def state_graph(
         finished = True
     except KeyboardInterrupt:
         progress("interrupted: keeping what was found")
+    known = unfolded(known)
     return _graph(assembly, known, unseen(known.samples, counts), seed, finished)
 
 
@@ -64,16 +76,16 @@ def _search(
     samples: int,
     progress: Callable[[str], None],
 ) -> None:
-    start = sample(known.geometry, rng)
+    start = known.representatives(sample(known.geometry, rng))
     counts.update({state: len(rows) for state, rows in known.by_state(start).items()})
-    known.add(start)
+    fresh, _ = known.add(start)
     progress(f"{len(start)} of the random starts ended in {len(counts)} states")
-    complete(known, rng, progress)
+    complete(known, fresh, rng, progress)
     known.most = max(samples, _EXPANDED)
     fresh, new = known.add(_more(known, rng))
-    _, beside = known.add(loosen(known, fresh))
+    more, beside = known.add(loosen(known, fresh))
     if new or beside:
-        complete(known, rng, progress)
+        complete(known, joined([fresh, more]), rng, progress)
 
 
 def _more(known: KnownStates, rng: np.random.Generator) -> Sorted:
@@ -97,10 +109,11 @@ def _graph(assembly: Assembly, known: KnownStates, rest: Unseen, seed: int, fini
     first = 1 if not ordered or ordered[0] == () else 2
     ids = {contacts: f"N{number}" for number, contacts in enumerate(ordered, start=first)}
     states = tuple(_state(geometry, ids[contacts], contacts, known.samples[contacts]) for contacts in ordered)
+    between = [pair for pair in known.transitions if pair[0] in ids and pair[1] in ids]
+    q = geometry.canonical(np.array([known.transitions[pair].q for pair in between])) if between else []
     edges = [
-        StateTransition(ids[tight], ids[loose], geometry.canonical(found.q[None])[0], found.displacement)
-        for (tight, loose), found in known.transitions.items()
-        if tight in ids and loose in ids
+        StateTransition(ids[pair[0]], ids[pair[1]], at, known.transitions[pair].displacement)
+        for pair, at in zip(between, q, strict=True)
     ]
     edges.sort(key=lambda edge: (int(edge.loose[1:]), int(edge.tight[1:])))
     return ContactStateGraph(assembly, states, tuple(edges), rest, seed, finished)

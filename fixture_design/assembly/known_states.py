@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Vector
+from fixture_design.arrays import Indices, Mask, Vector
 from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
-from fixture_design.assembly.sorting import Sorted, State, joined, state_of
+from fixture_design.assembly.sorting import Sorted, State, alike, joined, state_of, states_of
+from fixture_design.assembly.symmetry import Symmetries
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +31,17 @@ class KnownStates:
     """States and transitions while they are being found.
 
     Attributes:
+        symmetries: only one state of each orbit is kept, and one transition: the others are their images.
         most: samples that are kept of a state.
         samples: of each state; transitions: (state with more contacts, state with fewer) -> witness.
     """
 
     geometry: ContactGeometry
+    symmetries: Symmetries
     most: int
     samples: dict[State, Sorted] = field(default_factory=dict)
     transitions: dict[tuple[State, State], Transition] = field(default_factory=dict)
+    _linked: set[bytes] = field(default_factory=set)
 
     def add(self, found: Sorted) -> tuple[Sorted, int]:
         """Takes clear configurations in; returns those that are kept as samples, and how many states are new.
@@ -46,6 +49,7 @@ class KnownStates:
         A sample is kept while its state has too few, if it is away from those there are.
         """
         kept, before = [], len(self.samples)
+        found = self.representatives(found)
         for state, rows in self.by_state(found).items():
             fresh = self._away(state, found[rows])
             if len(fresh):
@@ -56,19 +60,45 @@ class KnownStates:
 
     def by_state(self, found: Sorted) -> dict[State, Indices]:
         """Rows of the clear configurations, by state."""
-        patterns, places = np.unique(found.touching, axis=0, return_inverse=True)
+        if not len(found):
+            return {}
+        first, places = alike(found.touching)
+        order = np.argsort(places, kind="stable")
         rows: dict[State, list[int]] = {}
-        for k, pattern in enumerate(patterns):
-            mine = np.flatnonzero((places.ravel() == k) & found.clear)
+        for k, alike_ones in zip(first, np.split(order, np.cumsum(np.bincount(places))[:-1]), strict=True):
+            mine = alike_ones[found.clear[alike_ones]]
             if mine.size:
-                rows.setdefault(state_of(self.geometry, pattern), []).extend(mine.tolist())
+                rows.setdefault(state_of(self.geometry, found.touching[k]), []).extend(mine.tolist())
         return {state: np.array(sorted(found_rows)) for state, found_rows in rows.items()}
 
-    def connect(self, states: Iterable[tuple[State, State]], q: np.ndarray, displacements: np.ndarray) -> None:
+    def connect(self, tight: Sorted, loose: Sorted) -> None:
         """Takes transitions in (more contacts first); of several witnesses the first stays."""
-        for pair, at, displacement in zip(states, q, displacements, strict=True):
+        if not len(tight):
+            return
+        both = np.concatenate([tight.touching, loose.touching], axis=1)
+        first, _ = alike(both)
+        tight, loose = tight[first], loose[first]
+        elements = self.symmetries.to_representatives(tight.touching, loose.touching)
+        displacements = self.symmetries.displaced(elements, self.geometry.between(tight.q, loose.q))
+        tight, loose = self.symmetries.of(elements, tight), self.symmetries.of(elements, loose)
+        states = (states_of(self.geometry, found.touching) for found in (tight, loose))
+        for pair, at, displacement in zip(zip(*states, strict=True), tight.q, displacements, strict=True):
             if set(pair[0]) > set(pair[1]) and pair not in self.transitions:
                 self.transitions[pair] = Transition(at, displacement)
+        self._linked.update(_keys(tight.touching, loose.touching))
+
+    def linked(self, tight: np.ndarray, loose: np.ndarray) -> Mask:
+        """Whether transitions between patterns (n, P), or images of them, are known."""
+        elements = self.symmetries.to_representatives(tight, loose)
+        images = (self.symmetries.permuted(elements, touching) for touching in (tight, loose))
+        return np.array([key in self._linked for key in _keys(*images)], dtype=bool)
+
+    def representatives(self, found: Sorted) -> Sorted:
+        """The configurations' images in the representatives of their states' orbits."""
+        if len(self.symmetries) == 1 or not len(found):
+            return found
+        first, places = alike(found.touching)
+        return self.symmetries.of(self.symmetries.to_representatives(found.touching[first])[places], found)
 
     def _away(self, state: State, found: Sorted) -> Sorted:
         """The configurations farthest from the samples and each other, as many as there is room for."""
@@ -91,6 +121,10 @@ class KnownStates:
     def _distances(self, q: Configuration, others: np.ndarray) -> np.ndarray:
         away = self.geometry.between(np.repeat(q[None], len(others), axis=0), others)
         return np.linalg.norm(away * weights(self.geometry), axis=1)
+
+
+def _keys(tight: np.ndarray, loose: np.ndarray) -> list[bytes]:
+    return [row.tobytes() for row in np.packbits(np.concatenate([tight, loose], axis=1), axis=1)]
 
 
 #: Samples this near to each other, relative to the size, are one [-].

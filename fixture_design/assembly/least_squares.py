@@ -10,6 +10,9 @@ from fixture_design.tolerances import SOLVED
 #: Steps after which a start that has not arrived is given up.
 _MOST_STEPS = 40
 
+#: Steps after which a start that is not nearer by this factor [-] is given up: it is in a minimum that is no solution.
+_STUCK_STEPS, _STUCK = 8, 0.5
+
 #: Largest angle of a step [rad]: only in the angle are the equations not linear.
 _LARGEST_ANGLE = 0.5
 
@@ -44,9 +47,12 @@ def solved(
     q, scale = q.copy(), weights(geometry)
     free = geometry.free.copy()
     free[geometry.turns] &= turning
-    left = np.full(len(q), np.inf)
+    left, before = np.full(len(q), np.inf), np.full(len(q), np.inf)
     active = np.arange(len(q))
-    for _ in range(_MOST_STEPS):
+    for number in range(_MOST_STEPS):
+        if number and number % _STUCK_STEPS == 0:
+            active = active[left[active] <= _STUCK * before[active]]
+            before[active] = left[active]
         if not len(active):
             break
         found = geometry.solving(q[active], chosen[active])

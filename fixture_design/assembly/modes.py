@@ -8,13 +8,14 @@ both signs occur: the cones of all sign patterns together cover all motions, als
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Rows, Vector, Weights
+from fixture_design.assembly.point_motions import PointMotions
 from fixture_design.cones import convert_rows
 from fixture_design.cones.kernel import faces_of
 from fixture_design.errors import UnsupportedError
@@ -23,8 +24,8 @@ from fixture_design.tolerances import DEPENDENT, Tolerances
 #: Solved configurations carry the rounding of the equations, not that of input data.
 _ROUNDED = Tolerances(tie=1e-7)
 
-#: More independent contacts at facets' ends than this are not combined in all their signs.
-MOST_SIGNS = 10
+#: Contacts at facets' ends are not combined in all their signs if there are more choices than 2 to this.
+MOST_SIGNS = 13
 
 #: More contacts that depend on each other than this are not dropped in all combinations.
 _MOST_DROPPED = 6
@@ -43,31 +44,33 @@ class Mode:
     kept: Mask
 
 
-def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> list[Mode]:
+def contact_modes(
+    face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask, points: Sequence[PointMotions] | None = None
+) -> list[Mode]:
     """All modes of contacts with these face vectors.
 
     Args:
         face_vectors: shape (m, d), with angles multiplied by a length.
         at_end: shape (m,), contacts whose apex is at the end of its facet.
         free: shape (d,), displacements that are allowed.  turns: shape (d,), those that are angles.
+        points: what each point with contacts at ends admits, by places among these contacts; None: anything.
 
     Where the face vectors of contacts that a motion keeps depend on each other, the first order does not tell whether
-    it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then.
+    it keeps them (slip 2 of (3-29)): every choice of contacts to drop is a mode of its own then, if each point may keep
+    what is left of its own.
 
     Raises:
-        UnsupportedError: more than `MOST_SIGNS` independent contacts at ends of facets.
+        UnsupportedError: more than 2 ^ `MOST_SIGNS` choices of signs.
     """
     rows = face_vectors[:, free]
     rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
-    lines, sides = _lines(rows[at_end])
-    count = int(lines.max(initial=-1)) + 1
-    if count > MOST_SIGNS:
-        raise UnsupportedError(f"{count} contacts are at ends of facets at once, more than {MOST_SIGNS}")
-    modes = _Modes(rows, free)
-    for signs in product((1.0, -1.0), repeat=count):
+    modes = _Modes(rows, free, _placed(points or (), np.flatnonzero(at_end)))
+    for signs in _signs(rows[at_end], points):
+        turned = signs != 0
         signed = rows.copy()
-        signed[at_end] *= (np.array(signs)[lines] * sides)[:, None]
-        for displacement, kept in _of_one_cone(signed, modes, turns[free]):
+        signed[at_end] *= np.where(turned, -signs, 1.0)[:, None]
+        equal = np.flatnonzero(at_end)[~turned]
+        for displacement, kept in _of_one_cone(signed, modes, turns[free], equal):
             modes.add(displacement, kept)
     return list(modes.found.values())
 
@@ -75,10 +78,12 @@ def contact_modes(face_vectors: Rows, at_end: Mask, free: Mask, turns: Mask) -> 
 class _Modes:
     """The modes found so far, each once: those on the border of two sign patterns come from both."""
 
-    def __init__(self, rows: Rows, free: Mask) -> None:
-        self.rows, self.free = rows, free
+    def __init__(self, rows: Rows, free: Mask, points: Sequence[PointMotions]) -> None:
+        self.rows, self.free, self.points = rows, free, points
         self.found: dict[bytes, Mode] = {}
         self._depend: dict[bytes, bool] = {}
+        self._circuits: dict[bytes, Indices] = {}
+        self._may: dict[tuple[int, bytes], bool] = {}
 
     def add(self, displacement: Vector, kept: Mask) -> None:
         """Takes a mode in, and where its contacts depend on each other those with some of them dropped."""
@@ -90,8 +95,9 @@ class _Modes:
         if not self._new(pattern, direction, Mode(full, kept)):
             return
         if self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
-            for fewer in _with_dropped(kept):
-                self._new(pattern, direction, Mode(full, fewer))
+            for fewer in _with_dropped(kept, self._in_circuits(kept)):
+                if self._possible(fewer):
+                    self._new(pattern, direction, Mode(full, fewer))
 
     def _new(self, pattern: np.ndarray, direction: bytes, mode: Mode) -> bool:
         # where contacts depend on each other, the first order does not tell all motions apart
@@ -99,12 +105,60 @@ class _Modes:
         key = pattern.tobytes() + np.packbits(mode.kept).tobytes() + (direction if doubtful else b"")
         return self.found.setdefault(key, mode) is mode
 
+    def _possible(self, kept: Mask) -> bool:
+        """Whether each point may keep what is left of its own contacts."""
+        for number, point in enumerate(self.points):
+            own = kept[point.pairs]
+            key = number, own.tobytes()
+            if key not in self._may:
+                self._may[key] = point.may_keep(own)
+            if not self._may[key]:
+                return False
+        return True
+
+    def _in_circuits(self, kept: Mask) -> Indices:
+        """Contacts kept whose face vectors depend on others': any other can be left alone by the first order."""
+        key = kept.tobytes()
+        if key not in self._circuits:
+            left, values, _ = np.linalg.svd(self.rows[kept])
+            rank = int(np.count_nonzero(values > DEPENDENT))
+            self._circuits[key] = np.flatnonzero(kept)[(np.abs(left[:, rank:]) > DEPENDENT).any(axis=1)]
+        return self._circuits[key]
+
     def dependent(self, kept: Mask) -> bool:
         """Whether the face vectors of some contacts depend on each other."""
         key = np.packbits(kept).tobytes()
         if key not in self._depend:
             self._depend[key] = _dependent(self.rows[kept])
         return self._depend[key]
+
+
+def _placed(points: Sequence[PointMotions], places: Indices) -> list[PointMotions]:
+    """With places among all contacts, not only those at ends."""
+    return [replace(point, pairs=places[point.pairs]) for point in points]
+
+
+def _signs(rows: Rows, points: Sequence[PointMotions] | None) -> Iterator[np.ndarray]:
+    """The signs of d . dq of contacts at ends of facets for each of the cones; 0: it has to be zero."""
+    if points is None:
+        lines, sides = _lines(rows)
+        count = int(lines.max(initial=-1)) + 1
+        _refuse_too_many(float(2**count))
+        yield from (np.array(signs)[lines] * sides for signs in product((-1.0, 1.0), repeat=count))
+        return
+    _refuse_too_many(float(np.prod([len(point.signs) for point in points])))
+    for chosen in product(*(point.signs for point in points)):
+        signs = np.zeros(len(rows))
+        for point, own in zip(points, chosen, strict=True):
+            signs[point.pairs] = own
+        yield signs
+
+
+def _refuse_too_many(choices: float) -> None:
+    if choices > 2**MOST_SIGNS:
+        raise UnsupportedError(
+            f"{choices:.0f} choices of signs of contacts at ends of facets at once, more than {2**MOST_SIGNS}"
+        )
 
 
 def _lines(rows: Rows) -> tuple[Indices, Weights]:
@@ -121,8 +175,8 @@ def _lines(rows: Rows) -> tuple[Indices, Weights]:
     return lines, sides
 
 
-def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask) -> Iterator[tuple[Vector, Mask]]:
-    cone = convert_rows(signed, np.zeros((0, signed.shape[1])), _ROUNDED)
+def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask, equal: Indices) -> Iterator[tuple[Vector, Mask]]:
+    cone = convert_rows(signed, signed[equal], _ROUNDED)
     faces = faces_of(len(cone.lines), cone.vectors, cone.incidence, signed.shape[1])
     along = [*cone.lines, *-cone.lines]
     for kept, witness in zip(faces.rows, faces.witnesses, strict=True):
@@ -140,8 +194,7 @@ def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
     return least / np.linalg.norm(least)
 
 
-def _with_dropped(kept: Mask) -> Iterator[Mask]:
-    places = np.flatnonzero(kept)
+def _with_dropped(kept: Mask, places: Indices) -> Iterator[Mask]:
     for choice in product((False, True), repeat=len(places)):
         if not all(choice):
             fewer = kept.copy()

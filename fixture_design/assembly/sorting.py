@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool
 
-from fixture_design.arrays import Mask
+from fixture_design.arrays import Indices, Mask
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.tolerances import APART, SOLVED, TOUCHING
 
@@ -76,6 +76,14 @@ def state_of(geometry: ContactGeometry, touching: Mask) -> State:
 
 def states_of(geometry: ContactGeometry, touching: Bool[np.ndarray, "n P"]) -> list[State]:
     """As `state_of`, of each row; many rows are the same."""
-    patterns, places = np.unique(touching, axis=0, return_inverse=True)
-    states = [state_of(geometry, pattern) for pattern in patterns]
-    return [states[place] for place in places.ravel().tolist()]
+    first, places = alike(touching)
+    states = [state_of(geometry, touching[k]) for k in first]
+    return [states[place] for place in places.tolist()]
+
+
+def alike(touching: Bool[np.ndarray, "n P"]) -> tuple[Indices, Indices]:
+    """Where each different row is first, and for each row which of them it is."""
+    packed = np.packbits(touching, axis=1)
+    keys = packed.view(f"V{packed.shape[1]}").ravel() if packed.size else np.zeros(len(packed))
+    _, first, places = np.unique(keys, return_index=True, return_inverse=True)
+    return first, places.ravel()

@@ -9,6 +9,7 @@ from fixture_design.assembly import rotations
 from fixture_design.assembly.polytope import Polytope
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.contacts import Contact
+from fixture_design.contacts.contact import Clause
 from fixture_design.contacts.polyhedral import polyhedral_clauses
 from fixture_design.errors import AssemblyError
 from fixture_design.tolerances import TOUCHING
@@ -41,7 +42,7 @@ def spatial_contacts(geometry: SpatialGeometry, configuration: Vector) -> tuple[
     ]
     for pair, arm in zip(touching[at_ends], arms[at_ends], strict=True):
         if all(np.linalg.norm(contact.point - arm) > near for contact in contacts):
-            clauses = _clauses(geometry, q, arm, near)
+            clauses = tangent_clauses(geometry, q, arm, near)
             if clauses is None:
                 raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
             if clauses:
@@ -49,7 +50,10 @@ def spatial_contacts(geometry: SpatialGeometry, configuration: Vector) -> tuple[
     return tuple(contacts)
 
 
-def _clauses(geometry: SpatialGeometry, q: np.ndarray, arm: np.ndarray, near: float) -> tuple | None:
+def tangent_clauses(
+    geometry: SpatialGeometry, q: np.ndarray, arm: np.ndarray, near: float
+) -> tuple[Clause, ...] | None:
+    """The clauses of both bodies' tangent cones in one point, from the moving body's origin; None if they overlap."""
     R, position = rotations.matrices(q[:, 3:])[0], q[0, :3]
     mine = [piece @ R.T for piece in _cones(geometry.moving.pieces, arm @ R, near)]
     theirs = [piece for body in geometry.fixed for piece in _cones(body.pieces, position + arm, near)]

@@ -39,3 +39,12 @@ def test_polygons_with_more_vertices(benchmark, vertices: int) -> None:
     assembly: Assembly = of_polygons(random_polygon(rng, vertices), random_polygon(rng, vertices, 1.2), region)
     graph: ContactStateGraph = benchmark.pedantic(state_graph, (assembly,), rounds=1)
     assert len(graph.states) > 20
+
+
+@pytest.mark.benchmark(group="states")
+@pytest.mark.parametrize("box", [[1, 1, 1], [1, 1, 0.8], [1, 0.9, 0.8]])
+def test_boxes_with_fewer_symmetries(benchmark, box: list) -> None:
+    """A box on a plane: the same states, found with 192, 64 and 32 symmetries."""
+    assembly = assembly_from_data(CUBE | {"moving": {"box": box}}, "box.yaml")
+    graph: ContactStateGraph = benchmark.pedantic(state_graph, (assembly,), rounds=1)
+    assert len(graph.states) == 27

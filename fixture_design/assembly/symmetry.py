@@ -1,0 +1,112 @@
+"""Symmetries of an assembly: pairs of rigid motions that map both sides and the region of configurations to themselves.
+
+Let A map the moving body to itself and g: x -> B x + b the fixed ones, both rotations or both mirrored. Then the
+configuration (R, p) becomes (B R A^T, B p + b), and what touched before touches again, by other names: states and
+transitions come in orbits, and one of each is enough to be found.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from fixture_design.arrays import Indices, Mask, Points
+from fixture_design.assembly import rotations
+from fixture_design.assembly.sorting import Sorted
+
+#: Seed of the numbers by which one of each orbit is chosen: any would do.
+_SEED = 20
+
+
+@dataclass(frozen=True, eq=False)
+class Symmetries:
+    """A group of symmetries, the identity first.
+
+    Attributes:
+        pairs: shape (g, P): where each takes each contact pair.
+        before, after: shape (g, 4): quaternions of A^T and B, of their negatives where both are mirrored.
+        matrices: B, shape (g, 3, 3).  shifts: b, shape (g, 3) [m].  mirrored: shape (g,).
+    """
+
+    pairs: Int[np.ndarray, "g P"]
+    before: Float[np.ndarray, "g 4"]
+    after: Float[np.ndarray, "g 4"]
+    matrices: Float[np.ndarray, "g 3 3"]
+    shifts: Points
+    mirrored: Mask
+    _keys: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        own = np.random.default_rng(_SEED).integers(-(2**62), 2**62, size=self.pairs.shape[1])
+        object.__setattr__(self, "_keys", own[self.pairs])
+
+    @classmethod
+    def none(cls, count: int) -> Symmetries:
+        """The identity alone, of ``count`` pairs."""
+        still = np.array([[1.0, 0, 0, 0]])
+        return cls(np.arange(count)[None], still, still, np.eye(3)[None], np.zeros((1, 3)), np.zeros(1, dtype=bool))
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
+    def moved(self, elements: Indices, q: np.ndarray) -> np.ndarray:
+        """Configurations (n, c), each by its element."""
+        if len(self) == 1:
+            return q
+        position = np.einsum("nij,nj->ni", self.matrices[elements], q[:, :3]) + self.shifts[elements]
+        turned = rotations.product(rotations.product(self.after[elements], q[:, 3:]), self.before[elements])
+        return np.concatenate([position, turned], axis=1)
+
+    def displaced(self, elements: Indices, displacements: np.ndarray) -> np.ndarray:
+        """Displacements (n, d); angles are axial vectors: mirrors turn them the other way."""
+        if len(self) == 1:
+            return displacements
+        B = self.matrices[elements]
+        turn = np.where(self.mirrored[elements], -1.0, 1.0)[:, None]
+        lengths, angles = displacements[:, :3, None], displacements[:, 3:, None]
+        return np.concatenate([(B @ lengths)[..., 0], turn * (B @ angles)[..., 0]], axis=1)
+
+    def permuted(self, elements: Indices, table: np.ndarray) -> np.ndarray:
+        """A table (n, P) of numbers of pairs, each row by its element."""
+        if len(self) == 1:
+            return table
+        found = np.empty_like(table)
+        np.put_along_axis(found, self.pairs[elements], table, axis=1)
+        return found
+
+    def of(self, elements: Indices, found: Sorted) -> Sorted:
+        """Sorted configurations, each by its element: nothing is sorted again."""
+        if len(self) == 1:
+            return found
+        touching, distances = (self.permuted(elements, table) for table in (found.touching, found.distances))
+        return Sorted(self.moved(elements, found.q), touching, distances, found.admissible, found.clear)
+
+    def to_representatives(self, touching: np.ndarray, then: np.ndarray | None = None) -> Indices:
+        """For each row of pairs that touch the element that makes the representative of its orbit of it.
+
+        Args:
+            touching: shape (n, P).
+            then: shape (n, P): of several elements the one that makes the representative of this, too.
+
+        The representative is the one with the smallest sum of random numbers, one for each pair: two that are equal are
+        the same but for one chance in 2^60.
+        """
+        if len(self) == 1:
+            return np.zeros(len(touching), dtype=int)
+        sums = touching.astype(np.int64) @ self._keys.T
+        if then is not None:
+            behind = then.astype(np.int64) @ self._keys.T
+            least = sums == sums.min(axis=1, keepdims=True)
+            sums = np.where(least, behind, np.iinfo(np.int64).max)
+        return sums.argmin(axis=1)
+
+    def orbit(self, touching: np.ndarray, then: np.ndarray | None = None) -> Indices:
+        """Elements that make all different images of a pattern (P,), or of two together, one for each."""
+        if len(self) == 1:
+            return np.zeros(1, dtype=int)
+        sums = touching.astype(np.int64) @ self._keys.T
+        columns = [sums] if then is None else [sums, then.astype(np.int64) @ self._keys.T]
+        _, first = np.unique(np.stack(columns, axis=1), axis=0, return_index=True)
+        return np.sort(first)
