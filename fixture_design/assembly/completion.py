@@ -191,16 +191,18 @@ def _padded(touching: np.ndarray) -> np.ndarray:
 
 def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
     """Transitions of which the straight motion, contacts held, stays in the looser state."""
-    if known.geometry.ending.any() and len(tight):
-        more = (tight.touching & ~loose.touching).any(axis=1) & ~(loose.touching & ~tight.touching).any(axis=1)
-        rows = np.flatnonzero(more & ~known.linked(tight.touching, loose.touching))
-        rows = rows[_straight(known.geometry, tight[rows], loose[rows])]
-        tight, loose = tight[rows], loose[rows]
-    known.connect(tight, loose)
+    if not len(tight):
+        return
+    more = (tight.touching & ~loose.touching).any(axis=1) & ~(loose.touching & ~tight.touching).any(axis=1)
+    rows = np.flatnonzero(more & ~known.linked(tight.touching, loose.touching))
+    rows = rows[_straight(known.geometry, tight[rows], loose[rows])]
+    known.connect(tight[rows], loose[rows])
 
 
 def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.ndarray:
-    """Whether straight motions stay in the looser state: where circles roll, contacts may leave a feature."""
+    """Whether straight motions stay in the looser state: where circles roll, contacts may leave a feature, and where
+    edges are nearly along each other, what touches is not known well.
+    """
     way, kept = geometry.between(tight.q, loose.q), _padded(loose.touching)
     good = np.ones(len(tight), dtype=bool)
     for share in _LOOKED_AT:
