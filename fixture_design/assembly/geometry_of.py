@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from fixture_design.assembly.assembly import Assembly
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.planar import PlanarGeometry
@@ -10,6 +12,7 @@ from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.assembly.spatial import SpatialGeometry
 
 
+@lru_cache(maxsize=4)  # the same assembly is asked for again for every state
 def geometry_of(assembly: Assembly) -> ContactGeometry:
     """The contact geometry of an assembly.
 

@@ -52,4 +52,5 @@ def from_matrices(matrices: np.ndarray) -> np.ndarray:
     """Unit quaternions of rotation matrices (n, 3, 3)."""
     from scipy.spatial.transform import Rotation  # noqa: PLC0415 - 30 ms of any start
 
-    return np.roll(Rotation.from_matrix(matrices).as_quat(), 1, axis=1)
+    found = np.roll(Rotation.from_matrix(matrices).as_quat(), 1, axis=1)
+    return found / np.linalg.norm(found, axis=1, keepdims=True)  # the identity is exactly [1, 0, 0, 0]

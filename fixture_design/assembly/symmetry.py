@@ -57,6 +57,7 @@ class Symmetries:
             return q
         position = np.einsum("nij,nj->ni", self.matrices[elements], q[:, :3]) + self.shifts[elements]
         turned = rotations.product(rotations.product(self.after[elements], q[:, 3:]), self.before[elements])
+        turned /= np.linalg.norm(turned, axis=1, keepdims=True)  # what does not turn is exactly [1, 0, 0, 0]
         return np.concatenate([position, turned], axis=1)
 
     def displaced(self, elements: Indices, displacements: np.ndarray) -> np.ndarray:
