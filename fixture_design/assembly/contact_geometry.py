@@ -13,7 +13,7 @@ import numpy as np
 from fixture_design.arrays import Mask, Vector
 from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.pair_equations import PairEquations
-from fixture_design.errors import UnsupportedError
+from fixture_design.errors import AssemblyError, UnsupportedError
 
 #: More contact pairs than this are refused: the search would take hours.
 MOST_PAIRS = 4000
@@ -140,3 +140,13 @@ def weights(geometry: ContactGeometry) -> Vector:
     values = np.ones(geometry.dimension)
     values[geometry.turns] = geometry.radius
     return values
+
+
+def require_no_overlap(geometry: ContactGeometry, q: np.ndarray, near: float) -> None:
+    """Nothing, where the parts overlap by no more than ``near`` at a configuration, shape (1, c).
+
+    Raises:
+        AssemblyError: they do.
+    """
+    if geometry.overlap(q)[0] > near:
+        raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")

@@ -10,7 +10,7 @@ import numpy as np
 from fixture_design.analysis.hybrid_control import HybridControl, hybrid_control
 from fixture_design.arrays import ArrayLike, Vector
 from fixture_design.assembly.assembly import Assembly
-from fixture_design.assembly.contact_geometry import ContactGeometry
+from fixture_design.assembly.contact_geometry import ContactGeometry, require_no_overlap
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.planar import PlanarGeometry
 from fixture_design.assembly.round_contacts import round_contacts
@@ -67,8 +67,7 @@ def planar_contacts(geometry: PlanarGeometry, configuration: Vector) -> tuple[Co
     """
     q = configuration[None]
     near = TOUCHING * geometry.size
-    if geometry.overlap(q)[0] > near:
-        raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
+    require_no_overlap(geometry, q, near)
     everything = geometry.equations(q, np.arange(len(geometry.names))[None])
     touching = everything.distances[0] <= near
     contacts, together = _apices_together(geometry, q[0], near)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fixture_design.arrays import Vector
+from fixture_design.assembly.contact_geometry import require_no_overlap
 from fixture_design.assembly.drilled_block import DrilledBlock, Hole
 from fixture_design.assembly.round_features import Placement
 from fixture_design.assembly.round_space import RIM_POINTS, RoundGeometry
@@ -26,8 +27,7 @@ def round_contacts(geometry: RoundGeometry, configuration: Vector) -> tuple[Cont
     """
     q = configuration[None]
     near = TOUCHING * geometry.size
-    if geometry.overlap(q)[0] > near:
-        raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
+    require_no_overlap(geometry, q, near)
     place = geometry.place(q)
     touching = np.flatnonzero(geometry.distances(q)[0] <= near)
     if not touching.size:

@@ -6,6 +6,7 @@ import numpy as np
 
 from fixture_design.arrays import Vector
 from fixture_design.assembly import rotations
+from fixture_design.assembly.contact_geometry import require_no_overlap
 from fixture_design.assembly.polytope import Polytope
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.contacts import Contact
@@ -27,8 +28,7 @@ def spatial_contacts(geometry: SpatialGeometry, configuration: Vector) -> tuple[
     """
     q = configuration[None]
     near = TOUCHING * geometry.size
-    if geometry.overlap(q)[0] > near:
-        raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
+    require_no_overlap(geometry, q, near)
     touching = np.flatnonzero(geometry.distances(q)[0] <= near)
     if not touching.size:
         return ()

@@ -5,9 +5,9 @@ import pytest
 
 from fixture_design.assembly import ContactStateGraph, geometry_of, rotations, state_graph
 from fixture_design.assembly.contact_geometry import ContactGeometry
-from fixture_design.assembly.following import held
 from fixture_design.assembly.sampling import onto
 from fixture_design.assembly.sorting import sort_configurations, states_of
+from tests.assembly.followed import followed
 from tests.assembly.solids import prism
 from tests.assembly.test_not_convex import HOLE, PLATE, spatial
 
@@ -46,17 +46,7 @@ def test_every_sample_touches_exactly_so(graph: ContactStateGraph, geometry: Con
 def test_every_transition_has_a_feasible_path(graph: ContactStateGraph, geometry: ContactGeometry) -> None:
     """From its configuration along its displacement, with the contacts that stay held: all in the looser state."""
     for edge in graph.transitions:
-        tight, loose = graph.state(edge.tight).contacts, graph.state(edge.loose).contacts
-        assert set(loose) < set(tight)
-        pairs = [geometry.names.index(contact) for contact in loose] or [-1]
-        shares = np.array([[0.03], [0.1], [0.3], [0.6], [1.0]])
-        begin = np.repeat(edge.configuration[None], len(shares), axis=0)
-        assert states_of(geometry, sort_configurations(geometry, begin[:1]).touching) == [tight]
-        q, arrived = held(geometry, geometry.moved(begin, shares * edge.displacement), np.array([pairs] * len(shares)))
-        found = sort_configurations(geometry, q)
-        assert arrived.all()
-        assert found.admissible.all()
-        assert set(states_of(geometry, found.touching)) == {loose}, (edge.tight, edge.loose)
+        followed(graph, geometry, edge)
 
 
 def test_a_search_by_other_sets_finds_nothing_new(graph: ContactStateGraph, geometry: ContactGeometry) -> None:
