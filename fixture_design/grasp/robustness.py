@@ -36,6 +36,9 @@ _GRID = (-1.0, -0.6, -0.2, 0.2, 0.6, 1.0)
 #: A pad gives way to a tilt up to this [rad], everything gives way up to this much besides the error itself [m].
 _TILT, _GIVES = 0.15, 2e-3
 
+#: A normal is seen from this far off the surface [m], to this much of its cosine [-].
+_SEEN_FROM, _SEEN_TO = 1e-6, 1e-3
+
 
 @dataclass(frozen=True)
 class PoseError:
@@ -101,15 +104,20 @@ def _contacts_at(
 ) -> list[Contact]:
     """The contacts of some points of a fingertip, given from its ``at``."""
     facing = X_PL.vectors(tip.facing[None])[0]
+    steepest = -np.cos(_TILT if tip.pad is not None else tip.spread)
     single = len(corners) == 1
+    size = 0.0 if tip.pad is None else _CORNER * float(np.hypot(*tip.pad))
+    gives = (_GIVES if single else _GIVES / 4) + 3 * error.position + 3 * error.rotation * size
     friction = posture.model.hand.friction if tip.friction is None else tip.friction
+    torsion = torsion_of_patch(tip.soft) if tip.soft is not None and single else 0.0
     found = []
-    for corner in corners:
-        distance, foot = surface.nearest(X_PL.points((tip.at + corner)[None])[0])
-        size = 0.0 if tip.pad is None else _CORNER * float(np.hypot(*tip.pad))
-        if (
-            abs(distance - tip.radius)
-            > (_GIVES if single else _GIVES / 4) + 3 * error.position + 3 * error.rotation * size
+    places = X_PL.points(tip.at + np.array(corners))
+    surface.look(places)
+    for place in places:
+        distance, foot = surface.nearest(place)
+        # off the surface its normal is along the way to it: most places are settled by that
+        if abs(distance - tip.radius) > gives or (
+            abs(distance) > _SEEN_FROM and (place - foot) @ facing / distance > steepest + _SEEN_TO
         ):
             continue
         try:
@@ -117,10 +125,8 @@ def _contacts_at(
         except (GeometryError, UnsupportedError):  # no place to touch: this corner does not count
             continue
         normal = unit_normal(local.clauses[0][0])
-        if local.shape != "flat" or normal @ facing > -np.cos(_TILT if tip.pad is not None else tip.spread):
-            continue
-        torsion = torsion_of_patch(tip.soft) if tip.soft is not None and single else 0.0
-        found.append(Contact(tip.name, "finger", foot, ((normal,),), friction, torsion=torsion))
+        if local.shape == "flat" and normal @ facing <= steepest:
+            found.append(Contact(tip.name, "finger", foot, ((normal,),), friction, torsion=torsion))
     return found
 
 
