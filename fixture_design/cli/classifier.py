@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from fixture_design.cli.long_work import shown
 from fixture_design.cli.messages import say
 from fixture_design.cli.numbers import at_least_zero, numbers
 from fixture_design.errors import InputError
@@ -42,6 +42,9 @@ def classifier(
         Literal["neighbours", "none", "hull"], typer.Option("--interpolation", help="What is between samples.")
     ] = "neighbours",
     accuracy: Annotated[float, typer.Option("--accuracy", help="Of the interpolation (sine of an angle).")] = 0.005,
+    discriminants: Annotated[
+        bool, typer.Option("--discriminants/--no-discriminants", help="None: not for --c, --python; sooner.")
+    ] = True,
     fewest: Annotated[bool, typer.Option("--fewest", help="The smallest groups of discriminants.")] = False,
     seed: Annotated[int, typer.Option("--seed", help="Of the samples that sets are checked on.", min=0)] = 0,
     c_file: Annotated[Path | None, typer.Option("--c", help="Discriminants as C code.", metavar="OUT.c")] = None,
@@ -60,6 +63,8 @@ def classifier(
     if not (isfinite(accuracy) and accuracy > 0):
         raise InputError("--accuracy takes a number > 0", found=repr(accuracy))
     _require_used(measure, mass, floor, twist_noise)
+    if not discriminants and (fewest or c_file or python_file):
+        raise InputError("--fewest, --c and --python are about discriminants, and --no-discriminants leaves them out")
     known = read_graph(graph)
     if noise > 0 and floor == 0 and mass == 0 and measure != "displacement":
         say("--noise without --floor: forces of a part in free air are noise, and fit no state or a wrong one; "
@@ -78,12 +83,15 @@ def classifier(
             noise=Noise(noise, twist_noise, floor),
             interpolation=interpolation,
             accuracy=accuracy,
+            discriminants=discriminants,
             fewest=fewest,
             seed=seed,
-            progress=_progress,
+            progress=shown,
         )
     except InputError as error:
         raise error.within(graph) from error
+    finally:
+        shown("")
     _write(made, out, c_file, python_file)
     if as_json:
         from fixture_design.io import classifier_to_dict  # noqa: PLC0415 - only where asked for
@@ -133,8 +141,3 @@ def _print(made: Classifier) -> None:
 
 def _counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
-def _progress(words: str) -> None:
-    if sys.stderr.isatty():
-        say(words)

@@ -5,8 +5,14 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+from fixture_design.cli.messages import say
+
+#: A file is told no more often than this [s].
+_QUIET = 20.0
 
 
 @contextmanager
@@ -31,8 +37,22 @@ def interruptible() -> Iterator[Callable[[], bool]]:
             signal.signal(number, handler)
 
 
-def shown(words: str, part: float) -> None:
-    """Progress on stderr, in one line that the next one replaces; nothing where stderr is a file."""
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\033[K{words}" + (f" ({part:.0%})" if words else ""))
-        sys.stderr.flush()
+class _Progress:
+    """Progress on stderr: on a terminal one line that the next one replaces, in a file a line every 20 seconds."""
+
+    def __init__(self) -> None:
+        self._told = time.monotonic()
+
+    def __call__(self, words: str, part: float | None = None) -> None:
+        """Tell how far the work is, in words, and which part of it is done; no words take the line away."""
+        line = words if part is None or not words else f"{words} ({part:.0%})"
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r\033[K{line}")
+            sys.stderr.flush()
+        elif line and time.monotonic() - self._told > _QUIET:
+            self._told = time.monotonic()
+            say(line)
+
+
+#: The program's.
+shown = _Progress()

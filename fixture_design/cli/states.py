@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import signal
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.long_work import shown
 from fixture_design.cli.messages import say
 from fixture_design.cli.state_path import say_path
 from fixture_design.errors import InputError
@@ -90,14 +90,13 @@ def _found(assembly: Assembly, seed: int, samples: int) -> ContactStateGraph:
     if before is not None and before is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        return state_graph(assembly, seed=seed, samples=samples, progress=_progress)
+        graph = state_graph(assembly, seed=seed, samples=samples, progress=shown)
     finally:
+        shown("")
         signal.signal(signal.SIGINT, before)
-
-
-def _progress(words: str) -> None:
-    if sys.stderr.isatty():
-        say(words)
+    if not graph.complete:
+        say("interrupted: keeping what was found")
+    return graph
 
 
 def _say_state(assembly: Assembly, text: str, within: float | None, as_json: bool) -> None:

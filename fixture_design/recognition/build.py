@@ -81,28 +81,36 @@ def build_classifier(
         StateClass(state.id, state.contacts, found, tuple(sorted(successors[state.id], key=ids.index)))
         for state, found in zip(graph.states, sets, strict=True)
     )
-    progress("discriminants")
-    found = transitions(states, fewest=fewest) if discriminants else ()
+    found = transitions(states, fewest=fewest, progress=progress) if discriminants else ()
     return Classifier(graph.assembly.name, signals, states, found, noise or Noise(), made)
 
 
-def transitions(states: tuple[StateClass, ...], *, fewest: bool = False) -> tuple[Transition, ...]:
+def transitions(
+    states: tuple[StateClass, ...], *, fewest: bool = False, progress: Callable[[str], None] = lambda _: None
+) -> tuple[Transition, ...]:
     """DT(N_i, N_j) of every state and each of its successors.
+
+    Every cone of a successor is told from every cone of all others: some 0.3 ms each in the plane, 0.6 ms in space.
 
     Args:
         fewest: the smallest groups, each a set cover over all of N_i's other successors at once.
+        progress: is told in words how far it is.
     """
     by_id = {state.id: state for state in states}
     against = {state.id: [Against.of(cone) for cone in state.measured.cones] for state in states}
     if fewest:
-        return tuple(
-            Transition(state.id, target, _smallest(by_id[target].measured, _others(state, target, against)))
-            for state in states
-            for target in state.successors
-        )
+        found = []
+        for count, state in enumerate(states):
+            progress(f"discriminants after {state.id}, {count + 1} of {len(states)}")
+            for target in state.successors:
+                others = _others(state, target, against)
+                found.append(Transition(state.id, target, _smallest(by_id[target].measured, others)))
+        return tuple(found)
     pairs = {pair for state in states for pair in combinations(state.successors, 2)}
     told = {}
-    for first, second in sorted(pairs | {(b, a) for a, b in pairs}):
+    both_ways = sorted(pairs | {(b, a) for a, b in pairs})
+    for count, (first, second) in enumerate(both_ways):
+        progress(f"discriminants of {first} from {second}, {count + 1} of {len(both_ways)}")
         rows = [oriented_rows(cone) for cone in by_id[first].measured.cones]
         told[first, second] = [united(discriminants(some, other) for other in against[second]) for some in rows]
     return tuple(
