@@ -93,5 +93,8 @@ def _whole_outside(spans: Rows, rows: Rows) -> float:
 
 
 def _largest(spans: Rows, row: Vector) -> float:
-    """max of a . s over the unit vectors s of a cone: the length of a's projection onto it; 0 if a leaves it."""
-    return float(np.linalg.norm(nonnegative_least_squares(spans.T, row) @ spans))
+    """max of a . s over the unit vectors s of a cone: the length of a's projection onto it; 0 if a leaves it.
+
+    At most 1, as a is a unit vector; the sum says more where span vectors all but balance, and its weights are huge.
+    """
+    return min(1.0, float(np.linalg.norm(nonnegative_least_squares(spans.T, row) @ spans)))

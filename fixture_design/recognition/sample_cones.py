@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Point, Rows
 from fixture_design.assembly.contact_geometry import ContactGeometry
-from fixture_design.assembly.control import planar_contacts
-from fixture_design.assembly.planar import PlanarGeometry
+from fixture_design.assembly.control import MOST_CHOICES, contacts_of
+from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.cones import PolyhedralConvexCone, convert, intersect
 from fixture_design.contacts import Contact, cross, face_vectors, friction_edges
+from fixture_design.errors import UnsupportedError
 from fixture_design.recognition.signals import Signals
 
 
@@ -45,7 +47,7 @@ class SampleCones:
         vectors: of each the contacts' unit normals with their moments, and the weight's wrench where one is known,
             scaled as forces are, shape (n, m, d): what `chart` calls near.
         displacements: of each the alternatives A_1, A_2, ... of A by their unit face vectors, in the coordinates of the
-            displacement block: one, but for two convex apices in one point.
+            displacement block: one, but where convex apices or edges are in one point.
     """
 
     q: np.ndarray
@@ -87,8 +89,8 @@ def sample_cones(
     weights = _weights(R, physics, turns) if signals.weight else None
     rows = _wrenches(arms, normals) @ turns
     vectors = (rows if weights is None else np.concatenate([rows, weights[:, None]], axis=1)) * signals.wrench_scale
-    if not apart and isinstance(geometry, PlanarGeometry):
-        branches = [_branches(planar_contacts(geometry, row)) for row in q]
+    if not apart and not isinstance(geometry, RoundGeometry):
+        branches = [_branches(contacts_of(geometry, row), signals.plane) for row in q]
         spans = [_common([_force_spans(*branch, physics) for branch in some], signals.wrench_size) for some in branches]
         faces = [[face_vectors(*branch) for branch in some] for some in branches]
     else:
@@ -141,11 +143,14 @@ def _turnings(R: np.ndarray) -> np.ndarray:
     return turns
 
 
-def _branches(contacts: tuple[Contact, ...]) -> list[tuple[np.ndarray, np.ndarray]]:
+def _branches(contacts: tuple[Contact, ...], plane: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Points and normals of every choice of alternatives."""
     clauses = [(contact.point, clause) for contact in contacts for clause in contact.clauses]
-    points = np.array([point for point, _ in clauses]).reshape(-1, 2)
-    return [(points, np.array(choice).reshape(-1, 2)) for choice in product(*(clause for _, clause in clauses))]
+    choices = prod(len(clause) for _, clause in clauses)
+    if choices > MOST_CHOICES:
+        raise UnsupportedError(f"{choices} cones make the forces of one sample", expected=f"at most {MOST_CHOICES}")
+    points = np.array([point for point, _ in clauses]).reshape(-1, plane)
+    return [(points, np.array(choice).reshape(-1, plane)) for choice in product(*(clause for _, clause in clauses))]
 
 
 def _force_spans(points: np.ndarray, normals: np.ndarray, physics: Physics) -> Rows:

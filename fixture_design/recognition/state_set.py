@@ -14,6 +14,7 @@ from fixture_design.recognition.measurement import Interpolation, MeasurementSet
 from fixture_design.recognition.sample_cones import Physics, SampleCones, sample_cones
 from fixture_design.recognition.signals import Signals
 from fixture_design.recognition.simplices import Simplices, StateEquations, simplices_of
+from fixture_design.tolerances import TOUCHING
 
 #: Random starts for denser samples of a state, from which its bound is found.
 _DENSER = 300
@@ -81,17 +82,25 @@ def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactSta
     denser, _ = equations.onto(geometry.random(rng, _DENSER))
     tighter = [other.samples for other in graph.states if set(state.contacts) < set(other.contacts)]
     # two apices in one point are one contact with clauses of its own; what more touches is not that contact's
-    return np.concatenate([state.samples, denser, *([] if state.coincident else tighter)])
+    return np.concatenate([state.samples, denser, *(tighter if _pairs_alone(geometry, state) else [])])
+
+
+def _pairs_alone(geometry: ContactGeometry, state: ContactState) -> bool:
+    """Whether every pair that touches is a contact of its own: no apices in one point, in space no apex on a rim."""
+    if state.coincident or geometry.dimension == 3:
+        return not state.coincident
+    at_ends = geometry.at_apices(state.samples[:1], TOUCHING * geometry.size)[0]
+    return not any(at_ends[geometry.names.index(name)] for name in state.contacts)
 
 
 def _cones(geometry: ContactGeometry, state: ContactState, q: np.ndarray, recipe: Recipe) -> SampleCones:
-    return sample_cones(geometry, state.contacts, q, not state.coincident, recipe.signals, recipe.physics)
+    return sample_cones(geometry, state.contacts, q, _pairs_alone(geometry, state), recipe.signals, recipe.physics)
 
 
 def _interpolated(geometry: ContactGeometry, state: ContactState, pool: SampleCones, recipe: Recipe) -> MeasurementSet:
     """Spread samples, their simplices, and the samples that stick out added until few do."""
     equations = StateEquations.of(geometry, state.contacts)
-    chart = chart_of(geometry, state.contacts, pool, not state.coincident)
+    chart = chart_of(geometry, state.contacts, pool, _pairs_alone(geometry, state))
     chosen = spread(chart.points, recipe.spacing)
     for _ in range(_ROUNDS):
         part = pool.taking(chosen)

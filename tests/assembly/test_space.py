@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fixture_design.assembly import Assembly, ContactStateGraph, rotations, state_at, state_graph
+from fixture_design.assembly import Assembly, ContactStateGraph, contacts_at, rotations, state_at, state_graph
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.io import assembly_from_data
 from tests.assembly.solids import hull
@@ -153,3 +153,21 @@ def test_distances_are_those_of_the_equations() -> None:
     q[:10, 3:] = [1, 0, 0, 0]
     expected = geometry.equations(q, np.arange(len(geometry.names))[None]).distances
     np.testing.assert_allclose(geometry.distances(q), expected, atol=1e-12)
+
+
+def test_a_wall_on_the_floor_counts_at_the_rim_of_its_hidden_bottom() -> None:
+    """The seated box's lower corners touch the floor and the wall, and the wall's bottom, which pushes nowhere."""
+    wall = {"box": [0.02, 0.4, 0.2], "pose": {"xyz": [-0.01, 0, 0.1]}}
+    floor = {"box": [0.4, 0.4, 0.02], "pose": {"xyz": [0, 0, -0.01]}}
+    region = {"x": [0, 0.1], "y": [-0.1, 0.1], "z": [0, 0.1]}
+    assembly = spatial({"box": [0.06, 0.04, 0.03]}, floor, wall, region=region)
+    contacts = contacts_at(assembly, [0.03, 0, 0.015, 1, 0, 0, 0])
+    normals = {
+        tuple(np.sign(contact.point).tolist()): sorted(np.round(n, 9).tolist() for (n,) in contact.clauses)
+        for contact in contacts
+    }
+    down, left = [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]
+    assert normals == {
+        (-1, -1, -1): [left, down], (-1, 1, -1): [left, down], (-1, -1, 1): [left], (-1, 1, 1): [left],
+        (1, -1, -1): [down], (1, 1, -1): [down],
+    }  # fmt: skip

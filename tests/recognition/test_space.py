@@ -70,3 +70,29 @@ def test_contact_points_in_space(cube: ContactStateGraph) -> None:
             chosen = np.array([geometry.names.index(name) for name in state.contacts])[None]
             points = geometry.arms(state.samples, chosen) + state.samples[:, None, :3]
             np.testing.assert_allclose(points[..., 2], 0, atol=1e-9)
+
+
+def test_a_box_on_stacked_bodies_is_pushed_from_outside_only() -> None:
+    """A wall that stands on the floor has a hidden bottom, in whose rim the seated box touches too: it pushes nowhere.
+
+    With the rotation fixed: free, on the floor, at the wall, in the corner.
+    """
+    data = {
+        "schema": "fixture_design/assembly/1",
+        "space": "spatial",
+        "name": "stacked",
+        "moving": {"box": [0.06, 0.04, 0.03]},
+        "fixed": [
+            {"box": [0.4, 0.4, 0.02], "pose": {"xyz": [0.1, 0.1, -0.01]}},
+            {"box": [0.02, 0.4, 0.2], "pose": {"xyz": [-0.01, 0.1, 0.1]}},
+        ],
+        "region": {"x": [0, 0.08], "y": [0.05, 0.15], "z": [0, 0.06], "rotation": "fixed"},
+    }
+    graph = state_graph(assembly_from_data(data, "stacked.yaml"), samples=6)
+    made = build_classifier(graph, discriminants=False)
+    seated = max(made.states, key=lambda state: len(state.contacts))
+    for wrench in ([0, 0, -1.0, 0, 0, 0], [-1.0, 0, 0, 0, 0, 0], [-1.0, 0, -1.0, 0, 0, 0]):
+        assert seated.id in made.recognize(wrench).states
+    for wrench in ([0, 0, 1.0, 0, 0, 0], [1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, 0], [-1.0, 0, 0.2, 0, 0, 0]):
+        assert seated.id not in made.recognize(wrench).states
+    assert seated.measured.widening.force < 0.01
