@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.messages import say
 from fixture_design.cli.numbers import numbers
 from fixture_design.errors import InputError, UnknownNameError
 from fixture_design.io import dumps
@@ -58,6 +59,8 @@ def recognize(
 
     known = read_classifier(classifier)
     rows = read_log(log, known.signals.plane, known.signals.measure)
+    if rows.unused:
+        say(f"{log}: {', '.join(rows.unused)}: not used, {known.name} is planar")
     before = None if start is None else [name.strip() for name in start.split(",")]
     mounted = _sensor(known, rows, sensor, tare, tare_rows)
     _require_states(known, before)

@@ -14,6 +14,7 @@ import csv
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -76,9 +77,10 @@ def read_log(path: str | Path, plane: int, measure: Measure = "force") -> Log:
     wrenches = [row[1 : 1 + size] for row in rows] if size else None
     twists = [row[1 + size :] for row in rows] if blocks[1] else None
     try:
-        return Log.of([row[0] for row in rows], wrenches, twists, truths or None)
+        found = Log.of([row[0] for row in rows], wrenches, twists, truths or None)
     except InputError as error:
         raise FileFormatError(error.problem, source=path, found=error.found, expected=error.expected) from error
+    return replace(found, unused=tuple(name for name in columns if name not in (*wanted, _TRUTH)))
 
 
 def write_log(log: Log, path: str | Path) -> None:

@@ -25,12 +25,14 @@ class Log:
         wrenches: that the robot applies to the part, shape (n, d); zeros, which tell nothing, where none were measured.
         twists: likewise, or None.
         truth: of each row the contacts that there really were, sorted, where somebody knows; only for scoring.
+        unused: columns of its file that are left out, since the parts are planar.
     """
 
     times: Weights
     wrenches: Rows
     twists: Rows | None = None
     truth: tuple[tuple[str, ...], ...] | None = None
+    unused: tuple[str, ...] = ()
 
     @classmethod
     def of(

@@ -369,3 +369,25 @@ def test_commands(graph: ContactStateGraph, tmp_path: Path, command: Callable) -
         assert "log.csv" not in bad.err
     shown = command("classifier", tmp_path / "graph.json", "--json", "--interpolation", "hull")
     assert json.loads(shown.out)["schema"] == "fixture_design/classifier/1"
+
+
+def test_columns_that_nothing_is_made_of_are_named(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
+    write_graph(subgraph(graph, FOUR), tmp_path / "graph.json")
+    assert command("classifier", tmp_path / "graph.json", "-o", tmp_path / "c.json", "--no-discriminants").code == 0
+    log = tmp_path / "log.csv"
+    log.write_text(LOG)
+    assert "fz: not used, " in command("recognize", tmp_path / "c.json", log).err
+    log.write_text("t,fx,fy,mz,truth\n0,0,-5,1,\n")
+    assert "not used" not in command("recognize", tmp_path / "c.json", log).err
+
+
+def test_discriminants_may_be_left_out(graph: ContactStateGraph, tmp_path: Path, command: Callable) -> None:  # noqa: F811
+    write_graph(subgraph(graph, FOUR), tmp_path / "graph.json")
+    assert command("classifier", tmp_path / "graph.json", "-o", tmp_path / "c.json", "--no-discriminants").code == 0
+    made = read_classifier(tmp_path / "c.json")
+    assert not made.transitions
+    assert all(state.successors for state in made.states)
+    for option in (["--c", tmp_path / "c.c"], ["--python", tmp_path / "c.py"], ["--fewest"]):
+        bad = command("classifier", tmp_path / "graph.json", "--no-discriminants", *option)
+        assert bad.code == 2
+        assert "--no-discriminants leaves them out" in bad.err
