@@ -7,7 +7,7 @@ import numpy as np
 from fixture_design.arrays import Vector
 from fixture_design.assembly.contact_geometry import require_no_overlap
 from fixture_design.assembly.drilled_block import DrilledBlock, Hole
-from fixture_design.assembly.round_features import Placement
+from fixture_design.assembly.placement import Placement
 from fixture_design.assembly.round_space import RIM_POINTS, RoundGeometry
 from fixture_design.assembly.turned_body import TurnedBody
 from fixture_design.contacts import Contact

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fixture_design.assembly import round_touch
+from fixture_design.assembly.circles import ALONG, Circles, Cones, crossed, lengths_of
 from fixture_design.assembly.drilled_block import DrilledBlock, Hole
-from fixture_design.assembly.round_features import Placement
-from fixture_design.assembly.round_touch import ALONG, Circles, Cones, crossed, lengths_of
+from fixture_design.assembly.nearest_places import nearest_angles
+from fixture_design.assembly.placement import Placement
+from fixture_design.assembly.round_touch import in_hole, lowest
 
 #: Generators along which deep overlaps are looked for; shallow ones are found exactly.
 _GENERATORS = 16
@@ -37,7 +38,7 @@ def overlap_with(place: Placement, block: DrilledBlock, near: float) -> np.ndarr
 
 def _lowest(circle: Circles, normal: np.ndarray, offset: float) -> tuple[np.ndarray, np.ndarray]:
     """How far a circle's lowest point is over a plane, and where it is."""
-    out, sine = round_touch.lowest(circle, normal, np.zeros_like(circle.center))
+    out, sine = lowest(circle, normal, np.zeros_like(circle.center))
     return circle.center @ normal - offset - circle.radius * sine, circle.center + circle.radius * out
 
 
@@ -70,7 +71,7 @@ def _walls(place: Placement, block: DrilledBlock, hole: Hole, near: float) -> np
     wall = Cones(
         (hole.point + hole.low * hole.axis)[None], hole.axis[None], hole.radius, (0.0, 1.0), hole.high - hole.low
     )
-    points = [touch.point for k in range(len(place.body.radii)) for touch in round_touch.in_hole(place.circle(k), wall)]
+    points = [touch.point for k in range(len(place.body.radii)) for touch in in_hole(place.circle(k), wall)]
     return _aside(np.stack(points, axis=1), block, hole, near)
 
 
@@ -113,7 +114,7 @@ def _rim_inside(place: Placement, center: np.ndarray, axis: np.ndarray, radius: 
     )
     points = []
     for k in range(len(place.body.slopes)):
-        angles, _ = round_touch.nearest_angles(rim, place.surface(k), 1.0)
+        angles, _ = nearest_angles(rim, place.surface(k), 1.0)
         points.append(rim.points(angles))
     offsets = place.body.offsets(np.concatenate(points, axis=1), place.axis, place.origin)
     return -offsets.max(axis=-1).min(axis=1)

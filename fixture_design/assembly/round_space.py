@@ -10,13 +10,16 @@ import numpy as np
 from fixture_design.arrays import Mask
 from fixture_design.assembly import rotations
 from fixture_design.assembly.assembly import Assembly, Region
+from fixture_design.assembly.circles import crossed
 from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.drilled_block import DrilledBlock
 from fixture_design.assembly.pair_equations import PairEquations
-from fixture_design.assembly.round_features import Flat, Placement, RoundPair, pairs_of
+from fixture_design.assembly.placement import Placement
+from fixture_design.assembly.round_features import RoundPair, pairs_of
 from fixture_design.assembly.round_overlap import overlap_with
-from fixture_design.assembly.round_touch import Touch, crossed
+from fixture_design.assembly.round_planes import Flat
 from fixture_design.assembly.spatial_motions import SpatialMotions
+from fixture_design.assembly.touch import Touch
 from fixture_design.assembly.turned_body import TurnedBody
 from fixture_design.tolerances import TOUCHING
 
