@@ -10,9 +10,11 @@ from fixture_design.assembly.circles import Circles, Cones, dots
 #: apart.
 _AROUND = 48
 
-#: Newton steps from there, at most, and the last one, that leaves rounding only [rad].
+#: Newton steps from there, at most.
 _STEPS = 8
 
+
+#: The last one leaves rounding only [rad].
 _SETTLED = 1e-14
 
 
