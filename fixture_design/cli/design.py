@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from fixture_design.cli.design_report import design_in_words
-from fixture_design.cli.exit_codes import ExitCode, of_answer
+from fixture_design.cli.exit_codes import of_answer
 from fixture_design.cli.long_work import interruptible, shown
 from fixture_design.cli.messages import say
 from fixture_design.design import DesignResult, Task
@@ -49,6 +49,7 @@ def design(
     task = _task(task_or_part, scale)
     for path in (out, urdf, csv):
         _check_target(path, task)
+    _check_apart([path for path in (out, urdf, csv) if path is not None])
     if urdf is not None and task.space == "planar":
         raise UnsupportedError("a planar layout has no URDF form", source=task.source, expected="`--csv`")
     from fixture_design.design import design as design_layout  # noqa: PLC0415 - after the arguments are known good
@@ -66,7 +67,7 @@ def design(
             shown("", 1.0)
         _write(result, task, out, urdf, csv)
         _report(result, out, as_json)
-        raise typer.Exit(ExitCode.INTERRUPTED if cancelled() else of_answer(result.satisfied))
+        raise typer.Exit(cancelled.code if cancelled() else of_answer(result.satisfied))
 
 
 def _task(path: Path, scale: float) -> Task | Layout:
@@ -88,6 +89,13 @@ def _check_target(path: Path | None, task: Task | Layout) -> None:
             raise FileFormatError("this would overwrite an input", source=path, expected="another name")
     if not path.absolute().parent.is_dir():
         raise FileFormatError("the folder to write to is not there", source=path, expected="an existing folder")
+
+
+def _check_apart(paths: list[Path]) -> None:
+    real = [os.path.realpath(path) for path in paths]
+    for number, path in enumerate(paths):
+        if real[number] in real[:number]:
+            raise FileFormatError("two outputs would go to one file", source=path, expected="another name for each")
 
 
 def _write(result: DesignResult, task: Task | Layout, out: Path | None, urdf: Path | None, csv: Path | None) -> None:

@@ -34,7 +34,7 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
     if result.bound is not None:
         yield _bound_in_words(result.bound)
     if result.out is not None:
-        yield f"the part comes out along [{', '.join(f'{x:.3g}' for x in result.out)}]"
+        yield f"the part comes out along [{', '.join(f'{x:.3g}' for x in result.out + 0.0)}]"
     if result.accuracy is not None and result.best_accuracy is not None:
         yield _accuracy_in_words(result, result.accuracy, result.best_accuracy)
     if result.margin is not None:

@@ -6,32 +6,58 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
+from fixture_design.cli.exit_codes import ExitCode
 from fixture_design.cli.messages import say
 
 #: A file is told no more often than this [s].
 _QUIET = 20.0
 
 
+class Ending:
+    """Whether the program was asked to end, and by what."""
+
+    def __init__(self) -> None:
+        self._by: int | None = None
+
+    def __call__(self) -> bool:
+        return self._by is not None
+
+    def ask(self, number: int) -> None:
+        self._by = number
+
+    @property
+    def code(self) -> ExitCode:
+        """What the program ends with then."""
+        return _CODES[signal.Signals(self._by)] if self._by is not None else ExitCode.HOLDS
+
+
+_CODES = {
+    signal.SIGINT: ExitCode.INTERRUPTED,
+    signal.SIGTERM: ExitCode.TERMINATED,
+    signal.SIGHUP: ExitCode.HUNG_UP,
+}
+
+
 @contextmanager
-def interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C, or a termination, once asks for the best so far; twice ends the program as ever."""
-    asked = threading.Event()
+def interruptible() -> Iterator[Ending]:
+    """Ctrl-C, a termination, or a closed terminal, once asks for the best so far; twice ends the program as ever."""
+    ending = Ending()
     if threading.current_thread() is not threading.main_thread():
-        yield asked.is_set
+        yield ending
         return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in _CODES}
 
     def ask(number: int, frame: object) -> None:
-        asked.set()
+        ending.ask(number)
         signal.signal(number, before[signal.Signals(number)])
 
     for number in before:
         signal.signal(number, ask)
     try:
-        yield asked.is_set
+        yield ending
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -11,7 +11,7 @@ from fixture_design.arrays import Mask
 from fixture_design.design.candidates import Candidates, stops
 from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
-from fixture_design.design.fitting import in_every_way, in_the_way, standing
+from fixture_design.design.fitting import in_every_way, in_the_way, standing, way_out
 from fixture_design.design.found import Found, Outcome
 from fixture_design.design.locating_several import redundancy
 from fixture_design.design.merit import as_it_holds, better_of, merit, noted
@@ -108,7 +108,10 @@ def attempt(asked: Asked, candidates: Candidates, plan: Plan, *, keep_all: bool,
     if task.candidates.pins is None:
         return found
     note = "without pins: no two holes of the part take a pin each in a way that lets it out and closes it"
-    return noted(found, note) if pinned is None else better_of(found, pinned)
+    if pinned is None:
+        return noted(found, note)
+    better = better_of(found, pinned)
+    return better if better is pinned else noted(better, f"without pins: with them {pinned.reason or 'it is worse'}")
 
 
 def _by_points(asked: Asked, problem: Problem, candidates: Candidates, start: Start, plan: Plan) -> DesignResult:
@@ -166,7 +169,8 @@ def _past_locators(
     assert result.verdict is not None
     hit = in_the_way(asked.task, asked.ways, problem, outcome.found, result.verdict, names)
     if hit is None or problem.cancelled():
-        return result
+        passed = way_out(asked.task, asked.ways, problem, outcome.found, result.verdict)
+        return result if passed is None else replace(result, out=passed)
     assert outcome.found.out is not None
     blocking = [index for index in outcome.found.locators.tolist() if hit[index]]
     where = ", ".join(f"{names[index]} on {problem.candidates.features[index]}" for index in blocking)

@@ -9,7 +9,7 @@ from itertools import product
 from fixture_design.arrays import Vector
 from fixture_design.design.attempt import Asked, attempt, leaves_straight, opens_all
 from fixture_design.design.fitting import fitting
-from fixture_design.design.merit import better_of
+from fixture_design.design.merit import better_of, noted
 from fixture_design.design.plans import Plan, by_certainty, plans, unused_friction
 from fixture_design.design.result import DesignResult
 from fixture_design.design.shortfall import left_out_in_words, not_yet_no
@@ -41,11 +41,23 @@ def design(
         >>> design(read_task("bracket.task.yaml")).layout        # doctest: +SKIP
     """
     ways = ways or ways_of(task.part, task.surface_gap)
+    asked = Asked(task, ways, seed, progress, cancelled)
+    best = _searched(asked)
+    if best.satisfied is Answer.YES or not task.candidates.more_tips or cancelled():
+        return best
+    simpler = replace(asked, task=replace(task, candidates=replace(task.candidates, more_tips=())))
+    found = _searched(simpler)
+    if found.satisfied is not Answer.YES:
+        return best
+    return noted(found, "with the first kind of tip alone: with all kinds no layout was found that holds")
+
+
+def _searched(asked: Asked) -> DesignResult:
+    task, ways, seed, progress, cancelled = asked.task, asked.ways, asked.seed, asked.progress, asked.cancelled
     progress("candidates", 0.0)
     candidates, left_out_notes = candidates_of(task, ways, ways.spots(task.candidates, seed))
     candidates, no_room = fitting(task, ways, candidates)
     left_out_notes += no_room + unused_friction(task)
-    asked = Asked(task, ways, seed, progress, cancelled)
     best: DesignResult | None = None
     free: Vector | None = None
     certain = False

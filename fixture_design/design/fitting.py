@@ -101,18 +101,27 @@ def in_the_way(task: Task, ways: Ways, problem: Problem, found: Found, verdict: 
     if found.out is None:
         return None
     new = found.locators[np.isin(found.locators, problem.new)]
-    use = _ways_out(verdict)
-    seen = None if use is None or use.obstacle is not None else use.direction
-    if task.limits.loading is not None:
-        seen = None
-    tried = [direction for direction in (seen, found.out) if direction is not None]
-    blocking = _tips(use, new, names)
-    if not len(blocking) and any(_fits(task, ways, problem.candidates, new, direction).all() for direction in tried):
+    blocking = _tips(_ways_out(verdict), new, names)
+    if not len(blocking) and way_out(task, ways, problem, found, verdict) is not None:
         return None
     hit = np.zeros(len(problem.candidates), dtype=bool)
     hit[problem.new] = ~_fits(task, ways, problem.candidates, problem.new, found.out)
     hit[blocking] = True
     return hit if hit[new].any() else None
+
+
+def way_out(task: Task, ways: Ways, problem: Problem, found: Found, verdict: Verdict) -> Point | None:
+    """The direction of the search, or that of the verdict, in which the part passes the new locators with their bodies.
+
+    None: in neither, or none was asked for. Where a direction is asked for, it is that of the search.
+    """
+    use = _ways_out(verdict)
+    tried = [found.out]
+    if task.limits.loading is None and use is not None and use.obstacle is None:
+        tried.append(use.direction)
+    new = found.locators[np.isin(found.locators, problem.new)]
+    fitting = (way for way in tried if way is not None and _fits(task, ways, problem.candidates, new, way).all())
+    return next(fitting, None)
 
 
 def in_every_way(verdict: Verdict | None) -> set[str]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: Candidates that a part gets where no spacing is asked for, about [-], and of a planar one.
 _SPATIAL, _PLANAR = 400, 80
 #: Parts of half the part's diagonal that candidates keep from edges; the first that leaves enough room is taken [-].
-_EDGE_MARGINS = (0.02, 0.005, 0.0)
+_EDGE_MARGINS = (0.02, 0.005, 0.001, 0.0)
 #: Fewer candidates than this are not enough for a choice [-].
 _ENOUGH = 40
 
@@ -150,11 +150,35 @@ class PartSurface:
                     raise
                 continue
             if len(found) >= _ENOUGH:
-                break
+                return self._on_narrow_sides(found, rules, _EDGE_MARGINS[number + 1 :], seed)
         assert found is not None
         return found
 
-    def _spots(self, wishes: CandidateWishes, edge_margin: float, seed: int) -> SurfacePoints:
+    def _on_narrow_sides(
+        self, found: SurfacePoints, rules: CandidateWishes, margins: Sequence[float], seed: int
+    ) -> SurfacePoints:
+        """Candidates with more on sides that a margin has left bare, nearer to their edges; in space."""
+        from fixture_design.geometry import Polygon  # noqa: PLC0415 - as above
+        from fixture_design.verification.bare_sides import bare_facets, replaced_on  # noqa: PLC0415 - as above
+
+        if isinstance(self.geometry, Polygon) or rules.grid is not None:
+            return found
+        for part in margins:
+            bare = bare_facets(self.geometry, found, rules.spacing or self._spacing())
+            bare = bare if rules.facets is None else tuple(sorted({*bare} & {*rules.facets}))
+            if not bare:
+                break
+            try:
+                more = self._spots(rules, part * self.scale().length, seed, bare)
+            except GeometryError:  # none there, or keep-outs
+                continue
+            found = replaced_on(bare, found, more)
+        return found
+
+    def _spots(
+        self, wishes: CandidateWishes, edge_margin: float, seed: int, facets: tuple[int, ...] | None = None
+    ) -> SurfacePoints:
+        """With ``facets`` on these only."""
         from fixture_design.geometry import (  # noqa: PLC0415 - as above
             Box,
             Polygon,
@@ -167,7 +191,9 @@ class PartSurface:
         )
 
         rules = SamplingRules(
-            facets=wishes.facets, edge_margin=edge_margin, keep_out=[Box(low, high) for low, high in wishes.keep_out]
+            facets=wishes.facets if facets is None else facets,
+            edge_margin=edge_margin,
+            keep_out=[Box(low, high) for low, high in wishes.keep_out],
         )
         geometry, X_WP = self.geometry, self.part.pose
         if isinstance(geometry, Polygon):

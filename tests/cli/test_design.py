@@ -254,9 +254,9 @@ def test_inputs_are_not_overwritten(command: Command, box: Path, tmp_path: Path)
     assert not (tmp_path / "out.yaml").exists()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_a_stop_saves_the_best_so_far(
-    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+    command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals, code: int
 ) -> None:
     told = []
 
@@ -271,7 +271,7 @@ def test_a_stop_saves_the_best_so_far(
         ran = command("design", saved(tmp_path, PLANAR.replace("[-1, -1]", "[0, -1]")), "-o", tmp_path / "out.yaml")
     finally:
         signal.signal(number, before)
-    assert ran.code == 130
+    assert ran.code == code
     assert told == ["candidates", "way out 1 of 2", "way out 2 of 2", ""]
     assert len(read_layout(tmp_path / "out.yaml").elements) == 5
 
@@ -292,3 +292,11 @@ def test_friction_that_makes_no_difference_is_told(command: Command, tmp_path: P
     assert "makes no difference" not in without.out
     told = command("design", saved(tmp_path, bare + "\nfriction: 0.2\n"), "-o", tmp_path / "out.yaml")
     assert "friction 0.2 makes no difference" in told.out
+
+
+def test_two_outputs_in_one_file_are_refused(command: Command, tmp_path: Path) -> None:
+    out = tmp_path / "out.yaml"
+    ran = command("design", saved(tmp_path, PLANAR), "-o", out, "--csv", tmp_path / "." / "out.yaml")
+    assert ran.code == 2
+    assert "two outputs would go to one file" in ran.err
+    assert not out.exists()
