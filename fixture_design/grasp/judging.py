@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fixture_design.arrays import Point, Vector
-from fixture_design.errors import GeometryError
+from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry import PartGeometry, mass_of
 from fixture_design.geometry.features import features_of
 from fixture_design.geometry.surface import SolidSurface
@@ -19,11 +19,12 @@ from fixture_design.grasp.quality import Quality, quality
 from fixture_design.grasp.result import Grasp
 from fixture_design.grasp.robustness import PoseError, robust_share
 from fixture_design.grasp.spots import feature
+from fixture_design.grasp.stops import Travel
 from fixture_design.grasp.torques import Drives
 from fixture_design.grasp.touching import Touching, runs_into, touching
 from fixture_design.grasp.weakest import weakest
 from fixture_design.layout import Part, element_name
-from fixture_design.tolerances import FINGER_GAP
+from fixture_design.tolerances import CLOSING_LEFT, FINGER_GAP
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
 
@@ -108,7 +109,25 @@ def drafted(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> Draft | 
     if measured.epsilon == 0:
         few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
         return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
+    drives = Drives.of(posture, contacts.contacts, found.links, site.center)
+    if not squeezes(drives):
+        return f"nothing squeezes: {drives.stopped.in_words(posture.model)}"
     return Draft(posture, found, contacts, _features(found, site), measured)
+
+
+def squeezes(drives: Drives) -> bool:
+    """Whether drives can squeeze with all contacts, where joints are at their stops; where none is, contacts that
+    close can always.
+    """
+    return not drives.stopped or drives.squeeze(1.0) is not None
+
+
+def _short(posture: Posture, tips: Sequence[Fingertip]) -> Iterator[str]:
+    """What there is to say of fingertips that can hardly close any further."""
+    for tip in tips:
+        left = Travel.of(posture, tip).closing
+        if left < CLOSING_LEFT:
+            yield f"fingertip {tip.name!r} can close by only {format_length(left)} more: its joints are at their stops then"
 
 
 def _with_fingertips(found: Touching, links: Set[str]) -> Touching:
@@ -153,7 +172,7 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
     return Grasp(
         posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
-        notes=draft.touching.notes,
+        notes=(*draft.touching.notes, *_short(posture, tips)),
     )  # fmt: skip
 
 
@@ -165,17 +184,18 @@ def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
     """
     if load is None:
         return grasp
-    held = _drives(grasp).least_effort(load)
+    held = drives_of(grasp).least_effort(load)
     notes = () if held is not None else ("the drives do not hold the load that was asked for",)
     return replace(grasp, held=held, notes=(*grasp.notes, *notes))
 
 
 def with_weakest(grasp: Grasp) -> Grasp:
     """The grasp with what its drives hold in the worst direction."""
-    return replace(grasp, weakest=weakest(_drives(grasp)))
+    return replace(grasp, weakest=weakest(drives_of(grasp)))
 
 
-def _drives(grasp: Grasp) -> Drives:
+def drives_of(grasp: Grasp) -> Drives:
+    """What the hand's drives do to the part."""
     return Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
 
 

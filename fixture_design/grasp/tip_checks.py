@@ -34,7 +34,7 @@ _PAD_RISES, _RISES = 0.9, -0.1
 _REAL = (1e-3, 0.5)
 
 #: Corners of a pad may hang over its link by this part of the pad's smaller side [-]: rounded and chamfered faces.
-_OVERHANG = 0.15
+_OVERHANG = 0.2
 
 _ON_LINK = "`at`, ball and pad on the link's collision shapes, in the link's frame"
 

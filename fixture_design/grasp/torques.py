@@ -3,7 +3,7 @@
 Contact forces x >= 0 on the edges of the friction cones, on the part, balance a load w, and the fingers push them with
 joint torques tau = J^T f (J the contact's point fixed to its link, and its spin for the moments of soft tips):
 
-    W^T x + w = 0,    |T x| <= effort
+    W^T x + w = 0,    |T x| <= effort,    no torque towards a stop that its joint is at (`stops`)
 
 Joints that follow others load the one that moves them; the hand's own weight is left out. Drives without a limit hold
 anything. The cones are cut to pyramids from inside, so that a load said to be held is held.
@@ -20,6 +20,7 @@ from jaxtyping import Float
 from fixture_design.arrays import Point, Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.grasp.posture import Posture
+from fixture_design.grasp.stops import Stopped
 from fixture_design.grasp.wrenches import Pushes, pushes_of
 from fixture_design.tolerances import LEAST_COST
 
@@ -49,12 +50,14 @@ class Drives:
         torques: T, shape (f, m), torques of joints that move on their own for 1 N on each edge.
         limits: shape (f,).
         names: of those joints.
+        stopped: which of them are at a stop.
     """
 
     pushes: Pushes
     torques: Float[np.ndarray, "f m"]
     limits: Weights
     names: tuple[str, ...]
+    stopped: Stopped
 
     @classmethod
     def of(cls, posture: Posture, contacts: Sequence[Contact], links: Mapping[str, str], reference: Point) -> Drives:
@@ -62,16 +65,28 @@ class Drives:
         pushes, model = pushes_of(contacts, reference), posture.model
         X_HW = posture.X_WH.inverse()
         poses = model.poses(posture.q)
-        torques = np.zeros((len(model.free), len(pushes.owners)))
+        torques, speeds = np.zeros((len(model.free), len(pushes.owners))), np.zeros(len(model.free))
         for number in sorted(set(pushes.contacts)):
             edges = np.flatnonzero(np.array(pushes.contacts) == number)
             link = links[pushes.owners[edges[0]]]
             p_LC = poses[link].inverse().points(X_HW.points(pushes.points[edges[:1]]))[0]
             forces, moments = X_HW.vectors(pushes.forces[edges]), X_HW.vectors(pushes.moments[edges])
-            torques[:, edges] = model.jacobian(posture.q, link, p_LC).T @ forces.T
+            jacobian = model.jacobian(posture.q, link, p_LC)
+            speeds = np.maximum(speeds, np.linalg.norm(jacobian, axis=0))
+            torques[:, edges] = jacobian.T @ forces.T
             torques[:, edges] += model.spin_jacobian(posture.q, link).T @ moments.T
         names = tuple(model.joints[number].name for number in model.free.tolist())
-        return cls(pushes, torques, model.efforts, names)
+        return cls(pushes, torques, model.efforts, names, Stopped.of(posture, speeds))
+
+    @property
+    def rows(self) -> tuple[Float[np.ndarray, "r m"], Weights]:
+        """Rows and sides of  rows x <= sides: within the drives' limits, and none towards a stop."""
+        limited = np.isfinite(self.limits)
+        most = self.limits[limited]
+        rows = [self.torques[limited], -self.torques[limited]]
+        stops = [-self.torques[self.stopped.lower], self.torques[self.stopped.upper]]
+        count = sum(map(len, stops))
+        return np.vstack([*rows, *stops]), np.concatenate([most, most, np.zeros(count)])
 
     def largest(self, load: Vector) -> Held | None:
         """The largest multiple of a load, shape (6,) about the reference, that is held; None where none is."""
@@ -101,11 +116,14 @@ class Drives:
         limits = np.where(limited, self.limits, 1.0)
         shares = (self.torques / limits[:, None])[limited if limited.any() else slice(None)]
 
+        rows, sides = self.rows
         upper = np.vstack([np.hstack([side * shares, -np.ones((len(shares), 1))]) for side in (1.0, -1.0)])
+        upper = np.vstack([upper, np.hstack([rows, np.zeros((len(rows), 1))])])
+        sides = np.append(np.zeros(2 * len(shares)), sides)
         # a little of the forces themselves, so that nothing squeezes for nothing
         cost = np.append(np.full(count, LEAST_COST), 1.0)
         equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
-        found = linprog(cost, upper, np.zeros(len(upper)), equalities, -load, bounds=(0, None), method="highs")
+        found = linprog(cost, upper, sides, equalities, -load, bounds=(0, None), method="highs")
         if found.x is None or (limited.any() and found.x[-1] > 1):
             return None
         return self._held(1.0, found.x[:-1])
@@ -122,13 +140,10 @@ class Drives:
             return None
         member = np.array(self.pushes.contacts)[None] == np.arange(contacts)[:, None]
         member = member[member.any(axis=1)].astype(np.float64)
-        limited = np.isfinite(self.limits)
-        rows = self.torques[limited]
+        rows, most = self.rows
         upper = np.vstack([np.hstack([-member, np.ones((len(member), 1))]), np.append(np.ones(count), 0.0)[None]])
-        sides = np.append(np.zeros(len(member)), total)
-        for sign in (1.0, -1.0):
-            upper = np.vstack([upper, np.hstack([sign * rows, np.zeros((len(rows), 1))])])
-            sides = np.append(sides, self.limits[limited])
+        upper = np.vstack([upper, np.hstack([rows, np.zeros((len(rows), 1))])])
+        sides = np.concatenate([np.zeros(len(member)), [total], most])
         equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
         cost = np.append(np.zeros(count), -1.0)
         found = linprog(cost, upper, sides, equalities, np.zeros(6), bounds=(0, None), method="highs")
@@ -146,11 +161,9 @@ class Drives:
 
         if not len(self.pushes.owners):
             return np.zeros(3)
-        limited = np.isfinite(self.limits)
         # the contacts push the part with the opposite of the force that they hold
-        forces, rows = -self.pushes.forces.T, self.torques[limited]
-        upper = np.vstack([rows, -rows, forces, -forces])
-        sides = np.concatenate([np.tile(self.limits[limited], 2), np.full(6, most)])
+        forces, (rows, sides) = -self.pushes.forces.T, self.rows
+        upper, sides = np.vstack([rows, forces, -forces]), np.append(sides, np.full(6, most))
         moments = self.pushes.wrenches[:, 3:].T
         found = linprog(
             -direction @ forces, upper, sides, moments, np.zeros(3), bounds=(0, None), method="highs"
@@ -161,9 +174,8 @@ class Drives:
         """The solution, and whether it is bounded."""
         from scipy.optimize import linprog
 
-        limited = np.isfinite(self.limits)
-        rows = np.hstack([self.torques[limited], np.zeros((int(limited.sum()), 1))])
-        upper, most = np.vstack([rows, -rows]), np.tile(self.limits[limited], 2)
+        rows, most = self.rows
+        upper = np.hstack([rows, np.zeros((len(rows), 1))])
         found = linprog(
             cost, upper if len(upper) else None, most if len(upper) else None, equalities, sides,
             bounds=(0, None), method="highs",

@@ -24,7 +24,7 @@ def _loaded(tip: Fingertip, model=JAW):
     [
         (
             {"at": np.array([0.005, 0, 0.04])},
-            r"fingertip 'left': the middle of its pad is 25\.\d mm off link 'left_pad'",
+            r"fingertip 'left': the middle of its pad is 25\.\d mm off link",
         ),
         ({"pad": (22.0, 30.0)}, r"a corner of its pad is 18.6 m off .*look like millimetres"),
         ({"pad": (0.022, 0.06)}, "a corner of its pad is 15 mm off"),
