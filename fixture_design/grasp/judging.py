@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +23,7 @@ from fixture_design.grasp.stops import Travel
 from fixture_design.grasp.torques import Drives
 from fixture_design.grasp.touching import Touching, runs_into, touching
 from fixture_design.grasp.weakest import weakest
-from fixture_design.layout import Part, element_name
+from fixture_design.layout import Layout, Part, element_name
 from fixture_design.tolerances import CLOSING_LEFT, FINGER_GAP
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
@@ -110,16 +110,9 @@ def drafted(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> Draft | 
         few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
         return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
     drives = Drives.of(posture, contacts.contacts, found.links, site.center)
-    if not squeezes(drives):
+    if not drives.squeezes:
         return f"nothing squeezes: {drives.stopped.in_words(posture.model)}"
     return Draft(posture, found, contacts, _features(found, site), measured)
-
-
-def squeezes(drives: Drives) -> bool:
-    """Whether drives can squeeze with all contacts, where joints are at their stops; where none is, contacts that
-    close can always.
-    """
-    return not drives.stopped or drives.squeeze(1.0) is not None
 
 
 def _short(posture: Posture, tips: Sequence[Fingertip]) -> Iterator[str]:
@@ -127,7 +120,7 @@ def _short(posture: Posture, tips: Sequence[Fingertip]) -> Iterator[str]:
     for tip in tips:
         left = Travel.of(posture, tip).closing
         if left < CLOSING_LEFT:
-            yield f"fingertip {tip.name!r} can close by only {format_length(left)} more: its joints are at their stops then"
+            yield f"fingertip {tip.name!r} can close by only {format_length(left)} more, then its joints are at stops"
 
 
 def _with_fingertips(found: Touching, links: Set[str]) -> Touching:
@@ -165,15 +158,27 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     """
     posture, layout = draft.posture, draft.touching.layout
     verdict = verify(layout, found=draft.found, sets=False)
-    # a pad that lies on the part in part only is no element: its link has contacts instead
-    made = {element_name(one.name) for one in layout.elements} | {one.name for one in layout.contacts}
-    links = {draft.touching.links[name] for name in made}
-    tips = [tip for tip in posture.model.fingertips if tip.name in made or tip.link in links]
+    tips = _closing_tips(posture, layout, draft.touching.links)
     robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
     return Grasp(
         posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
         notes=(*draft.touching.notes, *_short(posture, tips)),
     )  # fmt: skip
+
+
+def with_told_robustness(grasp: Grasp, site: Site, error: PoseError, seed: int) -> Grasp:
+    """The grasp with its robustness at poses by which it was not chosen."""
+    tips = _closing_tips(grasp.posture, grasp.layout, grasp.links)
+    posture, X_WP = grasp.posture, site.part.pose
+    return replace(grasp, robust=robust_share(posture, X_WP, site.surface, tips, error, seed, told=True))
+
+
+def _closing_tips(posture: Posture, layout: Layout, links: Mapping[str, str]) -> list[Fingertip]:
+    """Fingertips that are elements of a layout, or whose links have contacts there."""
+    # a pad that lies on the part in part only is no element: its link has contacts instead
+    made = {element_name(one.name) for one in layout.elements} | {one.name for one in layout.contacts}
+    touching_links = {links[name] for name in made}
+    return [tip for tip in posture.model.fingertips if tip.name in made or tip.link in touching_links]
 
 
 def with_load(grasp: Grasp, load: Vector | None) -> Grasp:

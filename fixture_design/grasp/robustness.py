@@ -1,8 +1,9 @@
 """How well a grasp stands errors of the part's pose: in which share of them the fingers still close.
 
 The part is moved a little at random while the hand stays; every fingertip then gives way along its normal, until it
-touches what is nearest, as far as its joints have travel left. Of pads, which give way to a small tilt, the corners are looked at, or a grid where they
-overhang. Closed is what `design` calls so while it searches: rows of the friction cones' edges that close.
+touches what is nearest, as far as its joints have travel left. Of pads, which give way to a small tilt, the corners are
+looked at, or a grid where they overhang. Closed is what `design` calls so while it searches: rows of the friction
+cones' edges that close.
 """
 
 from __future__ import annotations
@@ -26,8 +27,9 @@ from fixture_design.grasp.wrenches import pushes_of
 from fixture_design.layout import Pose
 from fixture_design.tolerances import FINGER_GAP
 
-#: Poses looked at.
-POSES = 32
+#: Poses looked at to choose among grasps; and others for what is told of those that are kept, as the best of many looks
+#: better than it is at the poses that it was chosen by.
+POSES, POSES_TOLD = 32, 128
 
 #: Corners of a pad that count: a little inside of it [-].
 _CORNER = 0.4
@@ -51,24 +53,32 @@ class PoseError:
 
 
 def robust_share(
-    posture: Posture, X_WP: Pose, surface: SolidSurface, tips: Sequence[Fingertip], error: PoseError, seed: int
+    posture: Posture,
+    X_WP: Pose,
+    surface: SolidSurface,
+    tips: Sequence[Fingertip],
+    error: PoseError,
+    seed: int,
+    told: bool = False,
 ) -> float:
-    """The share of pose errors at which some fingertips still close; 0 without any."""
-    rng = np.random.default_rng(seed)
+    """The share of pose errors at which some fingertips still close; 0 without any.
+
+    Args:
+        told: at more poses, and others than those that a choice was made by.
+    """
+    rng, poses = np.random.default_rng((seed, int(told))), POSES_TOLD if told else POSES
     links, closed = posture.links(), 0
-    travels = {tip.name: Travel.of(posture, tip) for tip in tips}
-    for _ in range(POSES):
+    giving = {tip.name: _Giving(posture, Travel.of(posture, tip), error) for tip in tips}
+    for _ in range(poses):
         shift, turn = error.position * rng.standard_normal(3), error.rotation * rng.standard_normal(3)
         X_PW = composed(X_WP, _small(shift, turn, surface.geometry.box_center)).inverse()
         contacts = [
             contact
             for tip in tips
-            for contact in _given_way(
-                tip, composed(X_PW, links[tip.link]), surface, _Giving(posture, travels[tip.name], error)
-            )
+            for contact in _given_way(tip, composed(X_PW, links[tip.link]), surface, giving[tip.name])
         ]
         closed += _closes(contacts, surface)
-    return closed / POSES
+    return closed / poses
 
 
 @dataclass(frozen=True, eq=False)

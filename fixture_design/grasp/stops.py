@@ -1,9 +1,9 @@
 """Joints at their stops: their drives push on in vain, and fingers give way only as far as their joints go.
 
 What a joint that moves on its own has left to go is what it and all joints that follow it have. It is at a stop if no
-contact would move by more than the gap within which fingertips touch anyway:  room |dp/dq| <= gap. There a finger
-cannot follow a part that gives way, so that no torque of the drive towards the stop counts as a push: the stop takes it.
-The stop also takes what pushes the joint into it; this is not counted either, as drives alone can be commanded.
+contact would move by more than the gap within which fingertips touch anyway:  room |dp/dq| <= gap. There the joint
+cannot follow a part that gives way: its drive can press it against the stop, which makes it a fixed link, but cannot
+press it onto the part. The stop also takes what pushes the joint into it; that is not counted, as only drives are.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Stopped:
 
 @dataclass(frozen=True)
 class Travel:
-    """How far a fingertip can go along ``facing``, and back, as its joints have it left [m]; at most, to first order."""
+    """How far a fingertip can go along ``facing`` and back, by what its joints have left [m]; to first order."""
 
     closing: float
     opening: float

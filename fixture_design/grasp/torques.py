@@ -3,16 +3,19 @@
 Contact forces x >= 0 on the edges of the friction cones, on the part, balance a load w, and the fingers push them with
 joint torques tau = J^T f (J the contact's point fixed to its link, and its spin for the moments of soft tips):
 
-    W^T x + w = 0,    |T x| <= effort,    no torque towards a stop that its joint is at (`stops`)
+    W^T x + w = 0,    |T x| <= effort
 
-Joints that follow others load the one that moves them; the hand's own weight is left out. Drives without a limit hold
-anything. The cones are cut to pyramids from inside, so that a load said to be held is held.
+A drive that presses its joint against a stop makes it a fixed link, which holds up to the drive's effort but follows
+nothing; where no joint that can still move presses, nothing is held (`squeezes`). Joints that follow others load the
+one that moves them; the hand's own weight is left out. Drives without a limit hold anything. The cones are cut to
+pyramids from inside, so that a load said to be held is held.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -22,7 +25,7 @@ from fixture_design.contacts import Contact
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.stops import Stopped
 from fixture_design.grasp.wrenches import Pushes, pushes_of
-from fixture_design.tolerances import LEAST_COST
+from fixture_design.tolerances import DEFAULT, LEAST_COST
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,19 +81,34 @@ class Drives:
         names = tuple(model.joints[number].name for number in model.free.tolist())
         return cls(pushes, torques, model.efforts, names, Stopped.of(posture, speeds))
 
+    @cached_property
+    def squeezes(self) -> bool:
+        """Whether the drives can squeeze: some joint that has way to go presses, in forces x >= 0 that balance.
+
+        Where no joint is at a stop, contacts that close can always be squeezed, and this is not looked into.
+        """
+        if not self.stopped:
+            return True
+        ways = np.vstack([self.torques[~self.stopped.upper], -self.torques[~self.stopped.lower]])
+        return any(self._presses(way) for way in ways if np.abs(way).max(initial=0.0) > LEAST_COST)
+
+    def _presses(self, way: Weights) -> bool:
+        """Whether forces that balance, 1 N in all at most, take a torque or force of this kind."""
+        from scipy.optimize import linprog
+
+        count, balance = len(way), self.pushes.wrenches.T
+        found = linprog(-way, np.ones((1, count)), [1.0], balance, np.zeros(6), bounds=(0, None), method="highs")
+        return found.x is not None and bool(-found.fun > DEFAULT.near * np.abs(way).max())
+
     @property
-    def rows(self) -> tuple[Float[np.ndarray, "r m"], Weights]:
-        """Rows and sides of  rows x <= sides: within the drives' limits, and none towards a stop."""
+    def _rows(self) -> tuple[Float[np.ndarray, "r m"], Weights]:
+        """Rows and sides of  rows x <= sides: within the drives' limits."""
         limited = np.isfinite(self.limits)
-        most = self.limits[limited]
-        rows = [self.torques[limited], -self.torques[limited]]
-        stops = [-self.torques[self.stopped.lower], self.torques[self.stopped.upper]]
-        count = sum(map(len, stops))
-        return np.vstack([*rows, *stops]), np.concatenate([most, most, np.zeros(count)])
+        return np.vstack([self.torques[limited], -self.torques[limited]]), np.tile(self.limits[limited], 2)
 
     def largest(self, load: Vector) -> Held | None:
         """The largest multiple of a load, shape (6,) about the reference, that is held; None where none is."""
-        if not len(self.pushes.owners):
+        if not len(self.pushes.owners) or not self.squeezes:
             return None
         count = len(self.pushes.owners)
         cost = np.append(np.zeros(count), -1.0)
@@ -108,7 +126,7 @@ class Drives:
         Where no drive has a limit, the least largest torque.
         """
         count = len(self.pushes.owners)
-        if not count:
+        if not count or not self.squeezes:
             return None
         from scipy.optimize import linprog
 
@@ -116,14 +134,11 @@ class Drives:
         limits = np.where(limited, self.limits, 1.0)
         shares = (self.torques / limits[:, None])[limited if limited.any() else slice(None)]
 
-        rows, sides = self.rows
         upper = np.vstack([np.hstack([side * shares, -np.ones((len(shares), 1))]) for side in (1.0, -1.0)])
-        upper = np.vstack([upper, np.hstack([rows, np.zeros((len(rows), 1))])])
-        sides = np.append(np.zeros(2 * len(shares)), sides)
         # a little of the forces themselves, so that nothing squeezes for nothing
         cost = np.append(np.full(count, LEAST_COST), 1.0)
         equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
-        found = linprog(cost, upper, sides, equalities, -load, bounds=(0, None), method="highs")
+        found = linprog(cost, upper, np.zeros(len(upper)), equalities, -load, bounds=(0, None), method="highs")
         if found.x is None or (limited.any() and found.x[-1] > 1):
             return None
         return self._held(1.0, found.x[:-1])
@@ -136,11 +151,11 @@ class Drives:
         from scipy.optimize import linprog
 
         count, contacts = len(self.pushes.owners), max(self.pushes.contacts, default=-1) + 1
-        if not count:
+        if not count or not self.squeezes:
             return None
         member = np.array(self.pushes.contacts)[None] == np.arange(contacts)[:, None]
         member = member[member.any(axis=1)].astype(np.float64)
-        rows, most = self.rows
+        rows, most = self._rows
         upper = np.vstack([np.hstack([-member, np.ones((len(member), 1))]), np.append(np.ones(count), 0.0)[None]])
         upper = np.vstack([upper, np.hstack([rows, np.zeros((len(rows), 1))])])
         sides = np.concatenate([np.zeros(len(member)), [total], most])
@@ -159,10 +174,10 @@ class Drives:
         """
         from scipy.optimize import linprog
 
-        if not len(self.pushes.owners):
+        if not len(self.pushes.owners) or not self.squeezes:
             return np.zeros(3)
         # the contacts push the part with the opposite of the force that they hold
-        forces, (rows, sides) = -self.pushes.forces.T, self.rows
+        forces, (rows, sides) = -self.pushes.forces.T, self._rows
         upper, sides = np.vstack([rows, forces, -forces]), np.append(sides, np.full(6, most))
         moments = self.pushes.wrenches[:, 3:].T
         found = linprog(
@@ -174,7 +189,7 @@ class Drives:
         """The solution, and whether it is bounded."""
         from scipy.optimize import linprog
 
-        rows, most = self.rows
+        rows, most = self._rows
         upper = np.hstack([rows, np.zeros((len(rows), 1))])
         found = linprog(
             cost, upper if len(upper) else None, most if len(upper) else None, equalities, sides,

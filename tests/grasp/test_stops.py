@@ -54,6 +54,21 @@ def test_a_jaw_at_its_opening_stop_squeezes_as_ever():
     assert result.grasps[0].held is not None
 
 
+def test_a_jaw_at_its_stop_is_a_wall_for_one_that_still_closes(tmp_path):
+    """Each jaw on its own: the left one presses against its stop, up to its effort, and the right one squeezes."""
+    part, geometry = primitive("cube")
+    hand = model_of(JAW).hand
+    rules = {"left_joint": JointRule(lower=0.03, effort=20.0), "right_joint": JointRule(follows=None, effort=80.0)}
+    text = hand.model.read_text().replace('<mimic joint="left_joint" multiplier="1" offset="0"/>', "")
+    file = tmp_path / "loose.urdf"
+    file.write_text(text)
+    model = load_hand(replace(hand, model=file, joints=rules))
+    posture = Posture(model, model.positions({"left_joint": 0.03, "right_joint": 0.03}), at(0, 0, -0.115))
+    held = [posed(posture, part, geometry, np.array([0, 0, -f, 0, 0, 0])).grasps[0].held for f in (19.9, 20.1)]
+    assert held[0] is not None
+    assert held[1] is None  # half of it on each pad with friction 0.5: 20 N against the stop
+
+
 def test_little_travel_is_noted_and_bounds_how_fingers_follow():
     part, geometry = primitive("cube")
     (short,) = posed(_on_cube(_jaw(0.0295)), part, geometry).grasps
