@@ -28,7 +28,7 @@ from fixture_design.layout import Pose
 from fixture_design.tolerances import FINGER_GAP
 
 #: Poses looked at to choose among grasps; and others for what is told of those that are kept, as the best of many looks
-#: better than it is at the poses that it was chosen by.
+#: better than it is at the poses that it was chosen by. Where all or none of the first ones close, these are enough.
 POSES, POSES_TOLD = 32, 128
 
 #: Corners of a pad that count: a little inside of it [-].
@@ -66,10 +66,11 @@ def robust_share(
     Args:
         told: at more poses, and others than those that a choice was made by.
     """
-    rng, poses = np.random.default_rng((seed, int(told))), POSES_TOLD if told else POSES
-    links, closed = posture.links(), 0
+    rng = np.random.default_rng((seed, int(told)))
+    links = posture.links()
     giving = {tip.name: _Giving(posture, Travel.of(posture, tip), error) for tip in tips}
-    for _ in range(poses):
+    closed: list[bool] = []
+    while len(closed) < POSES or (told and len(closed) < POSES_TOLD and not _settled(closed)):
         shift, turn = error.position * rng.standard_normal(3), error.rotation * rng.standard_normal(3)
         X_PW = composed(X_WP, _small(shift, turn, surface.geometry.box_center)).inverse()
         contacts = [
@@ -77,8 +78,13 @@ def robust_share(
             for tip in tips
             for contact in _given_way(tip, composed(X_PW, links[tip.link]), surface, giving[tip.name])
         ]
-        closed += _closes(contacts, surface)
-    return closed / poses
+        closed.append(_closes(contacts, surface))
+    return sum(closed) / len(closed)
+
+
+def _settled(closed: Sequence[bool]) -> bool:
+    """Whether all or none of the first poses close."""
+    return len(closed) == POSES and sum(closed) in (0, POSES)
 
 
 @dataclass(frozen=True, eq=False)

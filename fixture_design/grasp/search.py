@@ -220,7 +220,11 @@ class _Run:
             notes = ("the search was stopped before all was tried",) if stopped else ()
             return GraspResult(Answer.YES, grasps, (), tried, None, (*self._notes, *notes))
         reason = self.finds.reason or reason_of(self.attempts.outcomes)
-        reason = f"the search was stopped before all was tried; {reason}" if stopped else reason
+        if stopped:
+            what = "all was tried" if self.finds.best else "it had found any grasp"
+            reason = (
+                f"the search was stopped before {what}; {reason}" if tried else f"the search was stopped before {what}"
+            )
         return GraspResult(Answer.UNDECIDED, grasps, (), tried, reason, self._notes)
 
     @property
