@@ -72,6 +72,10 @@ class Finds:
     def _told(self, grasp: Grasp) -> Grasp:
         return with_told_robustness(grasp, self.site, self.error, self.seed)
 
+    def tight(self) -> set[tuple[str, ...]]:
+        """Families whose best grasp leaves little of the friction."""
+        return {features for features, grasp in self.best.items() if grasp.tight}
+
     @property
     def reason(self) -> str | None:
         """Why none is good; None where there are none at all."""

@@ -13,6 +13,7 @@ from fixture_design.geometry import PartGeometry, mass_of
 from fixture_design.geometry.features import features_of
 from fixture_design.geometry.surface import SolidSurface
 from fixture_design.geometry.urdf_tree import composed
+from fixture_design.grasp.friction_use import friction_used, is_tight
 from fixture_design.grasp.hand import Fingertip
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import Quality, quality
@@ -23,7 +24,7 @@ from fixture_design.grasp.stops import Travel
 from fixture_design.grasp.torques import Drives
 from fixture_design.grasp.touching import Touching, runs_into, touching
 from fixture_design.grasp.weakest import weakest
-from fixture_design.layout import Layout, Part, element_name
+from fixture_design.layout import Answer, Layout, Part, element_name
 from fixture_design.tolerances import CLOSING_LEFT, FINGER_GAP
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
@@ -160,10 +161,11 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     verdict = verify(layout, found=draft.found, sets=False)
     tips = _closing_tips(posture, layout, draft.touching.links)
     robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
-    return Grasp(
+    grasp = Grasp(
         posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
         notes=(*draft.touching.notes, *_short(posture, tips)),
     )  # fmt: skip
+    return replace(grasp, tight=grasp.closed is Answer.YES and is_tight(grasp))
 
 
 def with_told_robustness(grasp: Grasp, site: Site, error: PoseError, seed: int) -> Grasp:
@@ -195,8 +197,13 @@ def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
 
 
 def with_weakest(grasp: Grasp) -> Grasp:
-    """The grasp with what its drives hold in the worst direction."""
-    return replace(grasp, weakest=weakest(drives_of(grasp)))
+    """The grasp with what its drives hold in the worst direction, and what its squeeze takes where that is much."""
+    used = (
+        (f"squeezing alone takes {friction_used(grasp):.0%} of the friction: little is left for loads",)
+        if grasp.tight
+        else ()
+    )
+    return replace(grasp, weakest=weakest(drives_of(grasp)), notes=(*grasp.notes, *used))
 
 
 def drives_of(grasp: Grasp) -> Drives:
@@ -205,11 +212,11 @@ def drives_of(grasp: Grasp) -> Drives:
 
 
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:
-    """Closed ones first, then by robustness, in steps of a tenth, then by epsilon."""
+    """Closed ones first, then those that leave friction, then by robustness, in steps of a tenth, then by epsilon."""
 
-    def worth(grasp: Grasp) -> tuple[bool, float, float]:
+    def worth(grasp: Grasp) -> tuple[bool, bool, float, float]:
         robust = 0.0 if grasp.robust is None else float(np.round(grasp.robust, 1))
         size = grasp.quality.least_weight if grasp.quality.epsilon is None else grasp.quality.epsilon
-        return grasp.closed == "yes", robust, size
+        return grasp.closed == "yes", not grasp.tight, robust, size
 
     return sorted(grasps, key=worth, reverse=True)

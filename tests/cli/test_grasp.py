@@ -67,6 +67,7 @@ def test_a_refused_grasp_is_written_as_one_and_requires_nothing(cube, tmp_path):
         assert "all requirements hold" not in told.stdout
         assert words in told.stdout
     (load,) = [one for one in _written(cube, tmp_path, "--load", "0,0,-10").loads if one.name == "asked for"]
+    assert load.force is not None
     np.testing.assert_allclose(load.force, [0, 0, -10])
 
 
