@@ -19,8 +19,9 @@ _STEPS = 6
 
 
 def is_tight(grasp: Grasp) -> bool:
-    """Whether a squeeze takes more of the friction than `FRICTION_LEFT` leaves."""
-    return not _squeezer(grasp)(1 - FRICTION_LEFT)
+    """Whether a squeeze takes more of the friction than `FRICTION_LEFT` leaves; not where there is no squeeze."""
+    squeezes = _squeezer(grasp)
+    return not squeezes(1 - FRICTION_LEFT) and squeezes(1.0)
 
 
 def friction_used(grasp: Grasp) -> float:
@@ -37,6 +38,7 @@ def _squeezer(grasp: Grasp) -> Callable[[float], bool]:
 
     def squeezes(share: float) -> bool:
         contacts = [replace(one, friction=share * one.friction) for one in grasp.verdict.contacts]
-        return Drives.of(grasp.posture, contacts, grasp.links, grasp.center).squeeze(1.0) is not None
+        drives = Drives.of(grasp.posture, contacts, grasp.links, grasp.center)
+        return drives.squeezes and drives.squeeze(1.0) is not None
 
     return squeezes

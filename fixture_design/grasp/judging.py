@@ -120,7 +120,9 @@ def _short(posture: Posture, tips: Sequence[Fingertip]) -> Iterator[str]:
     """What there is to say of fingertips that can hardly close any further."""
     for tip in tips:
         left = Travel.of(posture, tip).closing
-        if left < CLOSING_LEFT:
+        if left <= FINGER_GAP:
+            yield f"fingertip {tip.name!r} can close no further: its joints are at stops"
+        elif left < CLOSING_LEFT:
             yield f"fingertip {tip.name!r} can close by only {format_length(left)} more, then its joints are at stops"
 
 

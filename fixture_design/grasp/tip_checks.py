@@ -33,8 +33,9 @@ _PAD_RISES, _RISES = 0.9, -0.1
 #: Lengths of fingertips of real hands [m]: what is beyond may be of another unit.
 _REAL = (1e-3, 0.5)
 
-#: Corners of a pad may hang over its link by this part of the pad's smaller side [-]: rounded and chamfered faces.
-_OVERHANG = 0.2
+#: Corners of a pad may hang over its link by this part of the pad's smaller side [-], and no more than this [m]: faces
+#: are rounded and chamfered.
+_OVERHANG, _MOST_OVERHANG = 0.2, 5e-3
 
 _ON_LINK = "`at`, ball and pad on the link's collision shapes, in the link's frame"
 
@@ -64,6 +65,9 @@ def _checked(tip: Fingertip, model: HandModel) -> Iterator[str]:
     if off > most:
         problem, expected = f"{what} is {format_length(off)} off link {tip.link!r}", f"at most {format_length(most)}"
         raise HandError(problem, source=source, place=place, expected=f"{expected}: {_cause(skin, tip)}")
+    size = tip.radius if tip.pad is None else min(tip.pad)
+    if 0 < size < _REAL[0]:
+        yield f"fingertip {tip.name!r} is only {format_length(size)} large: check `units`"
     if off > FINGER_GAP:
         yield f"fingertip {tip.name!r}: {what} is {format_length(off)} off link {tip.link!r}, and taken as it is given"
 
@@ -82,9 +86,8 @@ def _farthest(skin: _Skin, tip: Fingertip, points: Float[np.ndarray, "n 3"]) -> 
         return float(off[0]), "its `at`" if tip.ball is None else "the foremost point of its ball", TIP_OFF_LINK
     if off[0] > TIP_OFF_LINK:
         return float(off[0]), "the middle of its pad", TIP_OFF_LINK
-    # a pad that is far too large is off by more than its link is wide
-    wide = 2 * max(link.around.radius for link, _ in skin.parts)
-    return float(off.max()), "a corner of its pad", max(TIP_OFF_LINK, _OVERHANG * min(*tip.pad, wide))
+    over = min(_OVERHANG * min(tip.pad), _MOST_OVERHANG)
+    return float(off.max()), "a corner of its pad", max(TIP_OFF_LINK, over)
 
 
 def _cause(skin: _Skin, tip: Fingertip) -> str:

@@ -38,6 +38,8 @@ def test_a_jaw_at_its_closing_stop_squeezes_nothing():
     assert found.weakest.force == 0
     assert found.robust is not None
     assert found.robust < 0.5  # no finger follows the part
+    assert "fingertip 'left' can close no further: its joints are at stops" in found.notes
+    assert not found.tight
 
 
 def test_what_a_jaw_at_its_closing_stop_is_to_hold_is_not_held():

@@ -52,6 +52,11 @@ def test_a_little_off_is_noted_and_a_tenth_of_a_millimetre_is_nothing():
         assert any("the middle of its pad is 500 um off" in note or "off link" in note for note in model.notes) == noted
 
 
+def test_a_tiny_pad_is_noted():
+    model = _loaded(replace(LEFT, pad=(22e-6, 3e-5)))
+    assert any("'left' is only 22 um large: check `units`" in note for note in model.notes)
+
+
 def test_a_link_that_is_made_of_nothing_holds_nothing(tmp_path):
     model = tmp_path / "bare.urdf"
     text = JAW.read_text()
