@@ -243,6 +243,16 @@ LEAST_FRICTION = 1e-7
 #: Fingertips and links this near to the part touch it [m]: joint positions and tip radii are not known better.
 FINGER_GAP = 1e-4
 
+#: Fingertips of a hand file may be this far off their link [m]: skins, rounded edges, what a drawing leaves out. What
+#: is further off touches nothing.
+TIP_OFF_LINK = 1e-3
+
+#: Fingertips that can close by less than this are told [m]: parts and joints are not known to much better.
+CLOSING_LEFT = 1e-3
+
+#: Squeezes that leave less than this share of the friction for loads are told, and chosen last [-].
+FRICTION_LEFT = 0.5
+
 #: Joint positions this much outside of their range are in it [rad or m]: inverse kinematics keeps to it so far.
 JOINT_SLACK = 1e-6
 

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
-from fixture_design.cli.exit_codes import ExitCode, of_answer
+from fixture_design.cli.exit_codes import of_answer
+from fixture_design.cli.grasp_layouts import carried, written
 from fixture_design.cli.grasp_report import grasps_in_words
 from fixture_design.cli.long_work import interruptible, shown
+from fixture_design.cli.messages import say
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import TASK_ENDINGS, dumps, read_layout, task_of_part, write_layout
-from fixture_design.layout import Part, Pose
+from fixture_design.layout import Layout, Part, Pose
 
 if TYPE_CHECKING:
     from fixture_design.grasp import GraspResult, Hand
@@ -24,13 +26,14 @@ _PAGES = (".html", ".htm", ".png")
 
 _HAND = "Hand file, or a URDF or SDF file (with NAME.hand.yaml beside it, or its fingertips are guessed)."
 _PART = "Part (STL, OBJ, ..., URDF), or a layout whose part it is, where it stands."
+_OUT = "Layout file of the best grasp to write; one that is refused is named so."
 _LOAD = "Force (N), and moment about the centre of mass (N m), on the part: fx,fy,fz or fx,fy,fz,mx,my,mz."
 
 
 def grasp(
     hand: Annotated[Path, typer.Argument(help=_HAND, metavar="HAND", readable=False)],
     part: Annotated[Path, typer.Argument(help=_PART, metavar="PART", readable=False)],
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="Layout file of the best grasp to write.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help=_OUT)] = None,
     scale: Annotated[float, typer.Option(help="Factor that makes a part file's vertices metres.")] = 1.0,
     most: Annotated[int, typer.Option(help="Grasps wanted, on different features.", min=1)] = 5,
     tries: Annotated[int, typer.Option(help="Places looked at at most.", min=1)] = 160,
@@ -61,7 +64,9 @@ def grasp(
         raise InputError("--table cannot be used", found=f"{table:g}", expected="a height in metres")
     given, X_WH = _joints(joint or []), _pose(pose)
     read = read_hand(hand)
-    held_part = _part(part, scale)
+    of_part = _layout_of(part, scale)
+    held_part = of_part.part
+    assert held_part is not None  # refused without one
     _check_target(out, (hand, part, read.model, held_part.file))
     _check_target(html, (hand, part, read.model, held_part.file), out)
     if html is not None and html.suffix.lower() not in _PAGES:
@@ -80,6 +85,7 @@ def grasp(
             raise error.within(part) from error
         finally:
             shown("", 1.0)
+        result = carried(result, of_part, wrench)
         _write(result, out, html)
         if as_json:
             from fixture_design.io.grasp_record import grasps_to_dict  # noqa: PLC0415 - pulls in the hands
@@ -88,19 +94,19 @@ def grasp(
         else:
             for line in grasps_in_words(result):
                 typer.echo(line)
-        raise typer.Exit(ExitCode.INTERRUPTED if cancelled() else of_answer(result.satisfied))
+        raise typer.Exit(cancelled.code if cancelled() else of_answer(result.satisfied))
 
 
-def _part(path: Path, scale: float) -> Part:
-    """The part that a file is, or that a layout names."""
+def _layout_of(path: Path, scale: float) -> Layout:
+    """The layout of a file, or one that has nothing but the part that a file is."""
     if path.suffix.lower() not in TASK_ENDINGS:
-        return task_of_part(path, scale).part
+        return Layout(path.stem, part=task_of_part(path, scale).part)
     if scale != 1:
         raise FileFormatError("`--scale` is for part files", source=path, expected="`scale` in the layout's `part`")
     layout = read_layout(path)
     if layout.part is None:
         raise FileFormatError("the layout has no part to grasp", source=path, expected="part: ...")
-    return layout.part
+    return layout
 
 
 def _judged(
@@ -166,9 +172,12 @@ def _check_target(path: Path | None, inputs: Sequence[Path | None], other: Path 
 
 def _write(result: GraspResult, out: Path | None, html: Path | None) -> None:
     if not result.grasps:
+        for path in filter(None, (out, html)):
+            stays = ", which stays as it was" if path.exists() else ""
+            say(f"nothing is written to {path}{stays}: there is no grasp to write")
         return
     if out is not None:
-        write_layout(result.grasps[0].layout, out)
+        write_layout(written(result), out)
     if html is not None:
         from fixture_design.viewing import preview  # noqa: PLC0415 - only for a page
 

@@ -65,10 +65,12 @@ def _grasp(number: int, grasp: Grasp) -> Iterator[str]:
 
 def _strength(weakest: Weakest, closed: Answer) -> str:
     """What is held in the worst direction; where it is not closed, that this goes for forces alone."""
-    way = ", ".join(f"{value + 0.0:.2f}" for value in weakest.direction)
-    force = f"at least {weakest.force:.3g} N" if np.isfinite(weakest.force) else "as much as the drives can do"
     alone = "; these are forces alone: not all moments are held" if closed is Answer.NO else ""
-    return f"holds {force if weakest.force > 0 else 'no force'} in the worst direction ({way}){alone}"
+    if not np.isfinite(weakest.force):
+        return f"holds any force, as its drives have no limit{alone}"
+    way = ", ".join(f"{value + 0.0:.2f}" for value in weakest.direction)
+    force = f"at least {weakest.force:.3g} N" if weakest.force > 0 else "no force"
+    return f"holds {force} in the worst direction ({way}){alone}"
 
 
 def as_options(posture: Posture) -> str:

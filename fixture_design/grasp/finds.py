@@ -10,7 +10,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from fixture_design.arrays import Vector
-from fixture_design.grasp.judging import Draft, Site, better_first, judged, with_load, with_weakest
+from fixture_design.grasp.judging import (
+    Draft,
+    Site,
+    better_first,
+    judged,
+    with_load,
+    with_told_robustness,
+    with_weakest,
+)
 from fixture_design.grasp.result import Grasp
 from fixture_design.grasp.robustness import PoseError
 from fixture_design.grasp.wanted import Progress
@@ -42,8 +50,7 @@ class Finds:
             self.progress("judging what was found", number / len(chosen))
             grasp = with_load(judged(draft, self.site, self.error, self.seed), self.load)
             rivals = [grasp, *filter(None, [self.best.get(grasp.features)])]
-            # good ones come first, whatever else they are worth
-            self.best[grasp.features] = sorted(better_first(rivals), key=self._is_good, reverse=True)[0]
+            self.best[grasp.features] = self._ordered(rivals)[0]
 
     @property
     def good(self) -> Mapping[tuple[str, ...], Grasp]:
@@ -51,9 +58,23 @@ class Finds:
         return {features: grasp for features, grasp in self.best.items() if self._is_good(grasp)}
 
     def grasps(self, most: int) -> tuple[Grasp, ...]:
-        """Up to so many, the good ones first, with what they hold in the worst direction."""
-        ordered = sorted(better_first(list(self.best.values())), key=self._is_good, reverse=True)
-        return tuple(map(with_weakest, ordered[:most]))
+        """Up to so many, the good ones first, with what they hold in the worst direction.
+
+        Those that are kept are measured again, and ordered by that.
+        """
+        kept = [self._told(grasp) for grasp in self._ordered(list(self.best.values()))[:most]]
+        return tuple(map(with_weakest, self._ordered(kept)))
+
+    def _ordered(self, grasps: Sequence[Grasp]) -> list[Grasp]:
+        """Good ones first, whatever else they are worth."""
+        return sorted(better_first(grasps), key=self._is_good, reverse=True)
+
+    def _told(self, grasp: Grasp) -> Grasp:
+        return with_told_robustness(grasp, self.site, self.error, self.seed)
+
+    def tight(self) -> set[tuple[str, ...]]:
+        """Families whose best grasp leaves little of the friction."""
+        return {features for features, grasp in self.best.items() if grasp.tight}
 
     @property
     def reason(self) -> str | None:

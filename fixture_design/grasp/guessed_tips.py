@@ -67,7 +67,8 @@ def guessed_tips(model: HandModel) -> tuple[tuple[Fingertip, ...], tuple[str, ..
     if not tips:
         return (), ("no link at the end of a joint is made of anything: there are no fingertips",)
     named = "; ".join(f"{tip.link}: {_in_words(tip)}" for tip in tips)
-    return tips, (f"fingertips are guessed from the leaf links, since there is no hand file: {named}",)
+    why = "there is no hand file" if model.hand.source is None else "the hand file names none"
+    return tips, (f"fingertips are guessed from the leaf links, since {why}: {named}",)
 
 
 def _in_words(tip: Fingertip) -> str:

@@ -26,7 +26,7 @@ def load_hand(hand: Hand) -> HandModel:
 
     Raises:
         HandError: Drake refuses the model; it is not one tree; it has no movable joint; joints follow each other in a
-            circle.
+            circle; a fingertip is off its link, or looks into it.
         UnknownNameError: a joint or link that the hand file names is not there.
         FileFormatError, UnsupportedError: of the model's files, see `model_text`.
     """
@@ -49,7 +49,11 @@ def load_hand(hand: Hand) -> HandModel:
         hand, joints, hand.fingertips, links, notes, plant, diagram, plant.GetMyMutableContextFromRoot(context)
     )
     _check_links(model)
-    if not hand.fingertips:
+    if hand.fingertips:
+        from fixture_design.grasp.tip_checks import check_tips
+
+        model = replace(model, notes=(*notes, *check_tips(model)))
+    else:
         from fixture_design.grasp.guessed_tips import guessed_tips
 
         tips, said = guessed_tips(model)

@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fixture_design.arrays import Point, Vector
-from fixture_design.errors import GeometryError
+from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry import PartGeometry, mass_of
 from fixture_design.geometry.features import features_of
 from fixture_design.geometry.surface import SolidSurface
 from fixture_design.geometry.urdf_tree import composed
+from fixture_design.grasp.friction_use import friction_used, is_tight
 from fixture_design.grasp.hand import Fingertip
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import Quality, quality
 from fixture_design.grasp.result import Grasp
 from fixture_design.grasp.robustness import PoseError, robust_share
 from fixture_design.grasp.spots import feature
+from fixture_design.grasp.stops import Travel
 from fixture_design.grasp.torques import Drives
 from fixture_design.grasp.touching import Touching, runs_into, touching
 from fixture_design.grasp.weakest import weakest
-from fixture_design.layout import Part, element_name
-from fixture_design.tolerances import FINGER_GAP
+from fixture_design.layout import Answer, Layout, Part, element_name
+from fixture_design.tolerances import CLOSING_LEFT, FINGER_GAP
 from fixture_design.verification import contacts_of, verify
 from fixture_design.verification.found import FoundContacts
 
@@ -108,7 +110,20 @@ def drafted(posture: Posture, site: Site, tips: Sequence[Fingertip]) -> Draft | 
     if measured.epsilon == 0:
         few = len(contacts.contacts) == 2 and not any(contact.torsion for contact in contacts.contacts)
         return "two hard points leave a spin about the line between them" if few else "the contacts do not close"
+    drives = Drives.of(posture, contacts.contacts, found.links, site.center)
+    if not drives.squeezes:
+        return f"nothing squeezes: {drives.stopped.in_words(posture.model)}"
     return Draft(posture, found, contacts, _features(found, site), measured)
+
+
+def _short(posture: Posture, tips: Sequence[Fingertip]) -> Iterator[str]:
+    """What there is to say of fingertips that can hardly close any further."""
+    for tip in tips:
+        left = Travel.of(posture, tip).closing
+        if left <= FINGER_GAP:
+            yield f"fingertip {tip.name!r} can close no further: its joints are at stops"
+        elif left < CLOSING_LEFT:
+            yield f"fingertip {tip.name!r} can close by only {format_length(left)} more, then its joints are at stops"
 
 
 def _with_fingertips(found: Touching, links: Set[str]) -> Touching:
@@ -146,15 +161,28 @@ def judged(draft: Draft, site: Site, error: PoseError | None, seed: int) -> Gras
     """
     posture, layout = draft.posture, draft.touching.layout
     verdict = verify(layout, found=draft.found, sets=False)
+    tips = _closing_tips(posture, layout, draft.touching.links)
+    robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
+    grasp = Grasp(
+        posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
+        notes=(*draft.touching.notes, *_short(posture, tips)),
+    )  # fmt: skip
+    return replace(grasp, tight=grasp.closed is Answer.YES and is_tight(grasp))
+
+
+def with_told_robustness(grasp: Grasp, site: Site, error: PoseError, seed: int) -> Grasp:
+    """The grasp with its robustness at poses by which it was not chosen."""
+    tips = _closing_tips(grasp.posture, grasp.layout, grasp.links)
+    posture, X_WP = grasp.posture, site.part.pose
+    return replace(grasp, robust=robust_share(posture, X_WP, site.surface, tips, error, seed, told=True))
+
+
+def _closing_tips(posture: Posture, layout: Layout, links: Mapping[str, str]) -> list[Fingertip]:
+    """Fingertips that are elements of a layout, or whose links have contacts there."""
     # a pad that lies on the part in part only is no element: its link has contacts instead
     made = {element_name(one.name) for one in layout.elements} | {one.name for one in layout.contacts}
-    links = {draft.touching.links[name] for name in made}
-    tips = [tip for tip in posture.model.fingertips if tip.name in made or tip.link in links]
-    robust = None if error is None else robust_share(posture, site.part.pose, site.surface, tips, error, seed)
-    return Grasp(
-        posture, layout, verdict, draft.touching.links, draft.features, draft.quality, site.center, robust,
-        notes=draft.touching.notes,
-    )  # fmt: skip
+    touching_links = {links[name] for name in made}
+    return [tip for tip in posture.model.fingertips if tip.name in made or tip.link in touching_links]
 
 
 def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
@@ -165,26 +193,32 @@ def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
     """
     if load is None:
         return grasp
-    held = _drives(grasp).least_effort(load)
+    held = drives_of(grasp).least_effort(load)
     notes = () if held is not None else ("the drives do not hold the load that was asked for",)
     return replace(grasp, held=held, notes=(*grasp.notes, *notes))
 
 
 def with_weakest(grasp: Grasp) -> Grasp:
-    """The grasp with what its drives hold in the worst direction."""
-    return replace(grasp, weakest=weakest(_drives(grasp)))
+    """The grasp with what its drives hold in the worst direction, and what its squeeze takes where that is much."""
+    used = (
+        (f"squeezing alone takes {friction_used(grasp):.0%} of the friction: little is left for loads",)
+        if grasp.tight
+        else ()
+    )
+    return replace(grasp, weakest=weakest(drives_of(grasp)), notes=(*grasp.notes, *used))
 
 
-def _drives(grasp: Grasp) -> Drives:
+def drives_of(grasp: Grasp) -> Drives:
+    """What the hand's drives do to the part."""
     return Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
 
 
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:
-    """Closed ones first, then by robustness, in steps of a tenth, then by epsilon."""
+    """Closed ones first, then those that leave friction, then by robustness, in steps of a tenth, then by epsilon."""
 
-    def worth(grasp: Grasp) -> tuple[bool, float, float]:
+    def worth(grasp: Grasp) -> tuple[bool, bool, float, float]:
         robust = 0.0 if grasp.robust is None else float(np.round(grasp.robust, 1))
         size = grasp.quality.least_weight if grasp.quality.epsilon is None else grasp.quality.epsilon
-        return grasp.closed == "yes", robust, size
+        return grasp.closed == "yes", not grasp.tight, robust, size
 
     return sorted(grasps, key=worth, reverse=True)

@@ -25,6 +25,8 @@ class Grasp:
         robust: share of pose errors at which it still closes; None where nobody asked.
         weakest: the direction in which a force through the centre of mass is held worst; None where nobody asked.
         held: the drives' torques for the load that was asked for; None without one, or where it is not held.
+        tight: whether squeezing alone takes more of the friction than `tolerances.FRICTION_LEFT` leaves; such grasps
+            are chosen last.
     """
 
     posture: Posture
@@ -37,6 +39,7 @@ class Grasp:
     robust: float | None = None
     weakest: Weakest | None = None
     held: Held | None = None
+    tight: bool = False
     notes: tuple[str, ...] = ()
 
     @property

@@ -7,6 +7,7 @@ judged (`judging`). Of each family, the fingers on the same features, the best s
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from itertools import islice
@@ -36,6 +37,9 @@ TRIES = 160
 
 #: Sets whose seeds are looked up.
 _SETS = 1500
+
+#: How often a family is tried again whose best grasp leaves little of the friction.
+_AGAIN = 4
 
 #: What a region is called by the best verdict there.
 _CALLED = {Answer.YES: "closed", Answer.UNDECIDED: "undecided", Answer.NO: "not closed"}
@@ -191,15 +195,18 @@ class _Run:
     def _look(self, library: Library, wanted: Iterable[Wanted]) -> None:
         """Drafts are made and judged until there are as many grasps as are wanted, or enough was tried.
 
-        What turns out undecided, or not to hold the load, does not count, and its family is tried again.
+        What turns out undecided, or not to hold the load, does not count, and its family is tried again; families whose
+        best leaves little of the friction are tried some times more.
         """
         drafts = self.attempts.drafts(library, wanted)
-        while more := list(islice(drafts, DRAFTS * (self.search.most - len(self.finds.good)))):
+        again: Counter[tuple[str, ...]] = Counter()
+        while more := list(islice(drafts, DRAFTS * max(1, self.search.most - len(self.finds.good)))):
             self.finds.judge(more)
-            for features in self.finds.best:
-                if features not in self.finds.good:
-                    del self.attempts.full[features]
-            if len(self.finds.good) >= self.search.most:
+            tight = {features for features in self.finds.tight() if again[features] < _AGAIN}
+            again.update(tight)
+            for features in {*self.finds.best} - {*self.finds.good} | tight:
+                del self.attempts.full[features]
+            if len(self.finds.good) >= self.search.most and not tight:
                 return
 
     def _became(self, features: tuple[str, str]) -> str:
@@ -220,7 +227,11 @@ class _Run:
             notes = ("the search was stopped before all was tried",) if stopped else ()
             return GraspResult(Answer.YES, grasps, (), tried, None, (*self._notes, *notes))
         reason = self.finds.reason or reason_of(self.attempts.outcomes)
-        reason = f"the search was stopped before all was tried; {reason}" if stopped else reason
+        if stopped:
+            what = "all was tried" if self.finds.best else "it had found any grasp"
+            reason = (
+                f"the search was stopped before {what}; {reason}" if tried else f"the search was stopped before {what}"
+            )
         return GraspResult(Answer.UNDECIDED, grasps, (), tried, reason, self._notes)
 
     @property

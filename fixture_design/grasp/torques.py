@@ -5,14 +5,17 @@ joint torques tau = J^T f (J the contact's point fixed to its link, and its spin
 
     W^T x + w = 0,    |T x| <= effort
 
-Joints that follow others load the one that moves them; the hand's own weight is left out. Drives without a limit hold
-anything. The cones are cut to pyramids from inside, so that a load said to be held is held.
+A drive that presses its joint against a stop makes it a fixed link, which holds up to the drive's effort but follows
+nothing; where no joint that can still move presses, nothing is held (`squeezes`). Joints that follow others load the
+one that moves them; the hand's own weight is left out. Drives without a limit hold anything. The cones are cut to
+pyramids from inside, so that a load said to be held is held.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -20,8 +23,9 @@ from jaxtyping import Float
 from fixture_design.arrays import Point, Vector, Weights
 from fixture_design.contacts import Contact
 from fixture_design.grasp.posture import Posture
+from fixture_design.grasp.stops import Stopped
 from fixture_design.grasp.wrenches import Pushes, pushes_of
-from fixture_design.tolerances import LEAST_COST
+from fixture_design.tolerances import DEFAULT, LEAST_COST
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +53,14 @@ class Drives:
         torques: T, shape (f, m), torques of joints that move on their own for 1 N on each edge.
         limits: shape (f,).
         names: of those joints.
+        stopped: which of them are at a stop.
     """
 
     pushes: Pushes
     torques: Float[np.ndarray, "f m"]
     limits: Weights
     names: tuple[str, ...]
+    stopped: Stopped
 
     @classmethod
     def of(cls, posture: Posture, contacts: Sequence[Contact], links: Mapping[str, str], reference: Point) -> Drives:
@@ -62,20 +68,47 @@ class Drives:
         pushes, model = pushes_of(contacts, reference), posture.model
         X_HW = posture.X_WH.inverse()
         poses = model.poses(posture.q)
-        torques = np.zeros((len(model.free), len(pushes.owners)))
+        torques, speeds = np.zeros((len(model.free), len(pushes.owners))), np.zeros(len(model.free))
         for number in sorted(set(pushes.contacts)):
             edges = np.flatnonzero(np.array(pushes.contacts) == number)
             link = links[pushes.owners[edges[0]]]
             p_LC = poses[link].inverse().points(X_HW.points(pushes.points[edges[:1]]))[0]
             forces, moments = X_HW.vectors(pushes.forces[edges]), X_HW.vectors(pushes.moments[edges])
-            torques[:, edges] = model.jacobian(posture.q, link, p_LC).T @ forces.T
+            jacobian = model.jacobian(posture.q, link, p_LC)
+            speeds = np.maximum(speeds, np.linalg.norm(jacobian, axis=0))
+            torques[:, edges] = jacobian.T @ forces.T
             torques[:, edges] += model.spin_jacobian(posture.q, link).T @ moments.T
         names = tuple(model.joints[number].name for number in model.free.tolist())
-        return cls(pushes, torques, model.efforts, names)
+        return cls(pushes, torques, model.efforts, names, Stopped.of(posture, speeds))
+
+    @cached_property
+    def squeezes(self) -> bool:
+        """Whether the drives can squeeze: some joint that has way to go presses, in forces x >= 0 that balance.
+
+        Where no joint is at a stop, contacts that close can always be squeezed, and this is not looked into.
+        """
+        if not self.stopped:
+            return True
+        ways = np.vstack([self.torques[~self.stopped.upper], -self.torques[~self.stopped.lower]])
+        return any(self._presses(way) for way in ways if np.abs(way).max(initial=0.0) > LEAST_COST)
+
+    def _presses(self, way: Weights) -> bool:
+        """Whether forces that balance, 1 N in all at most, take a torque or force of this kind."""
+        from scipy.optimize import linprog
+
+        count, balance = len(way), self.pushes.wrenches.T
+        found = linprog(-way, np.ones((1, count)), [1.0], balance, np.zeros(6), bounds=(0, None), method="highs")
+        return found.x is not None and bool(-found.fun > DEFAULT.near * np.abs(way).max())
+
+    @property
+    def _rows(self) -> tuple[Float[np.ndarray, "r m"], Weights]:
+        """Rows and sides of  rows x <= sides: within the drives' limits."""
+        limited = np.isfinite(self.limits)
+        return np.vstack([self.torques[limited], -self.torques[limited]]), np.tile(self.limits[limited], 2)
 
     def largest(self, load: Vector) -> Held | None:
         """The largest multiple of a load, shape (6,) about the reference, that is held; None where none is."""
-        if not len(self.pushes.owners):
+        if not len(self.pushes.owners) or not self.squeezes:
             return None
         count = len(self.pushes.owners)
         cost = np.append(np.zeros(count), -1.0)
@@ -93,7 +126,7 @@ class Drives:
         Where no drive has a limit, the least largest torque.
         """
         count = len(self.pushes.owners)
-        if not count:
+        if not count or not self.squeezes:
             return None
         from scipy.optimize import linprog
 
@@ -118,17 +151,14 @@ class Drives:
         from scipy.optimize import linprog
 
         count, contacts = len(self.pushes.owners), max(self.pushes.contacts, default=-1) + 1
-        if not count:
+        if not count or not self.squeezes:
             return None
         member = np.array(self.pushes.contacts)[None] == np.arange(contacts)[:, None]
         member = member[member.any(axis=1)].astype(np.float64)
-        limited = np.isfinite(self.limits)
-        rows = self.torques[limited]
+        rows, most = self._rows
         upper = np.vstack([np.hstack([-member, np.ones((len(member), 1))]), np.append(np.ones(count), 0.0)[None]])
-        sides = np.append(np.zeros(len(member)), total)
-        for sign in (1.0, -1.0):
-            upper = np.vstack([upper, np.hstack([sign * rows, np.zeros((len(rows), 1))])])
-            sides = np.append(sides, self.limits[limited])
+        upper = np.vstack([upper, np.hstack([rows, np.zeros((len(rows), 1))])])
+        sides = np.concatenate([np.zeros(len(member)), [total], most])
         equalities = np.hstack([self.pushes.wrenches.T, np.zeros((6, 1))])
         cost = np.append(np.zeros(count), -1.0)
         found = linprog(cost, upper, sides, equalities, np.zeros(6), bounds=(0, None), method="highs")
@@ -144,13 +174,11 @@ class Drives:
         """
         from scipy.optimize import linprog
 
-        if not len(self.pushes.owners):
+        if not len(self.pushes.owners) or not self.squeezes:
             return np.zeros(3)
-        limited = np.isfinite(self.limits)
         # the contacts push the part with the opposite of the force that they hold
-        forces, rows = -self.pushes.forces.T, self.torques[limited]
-        upper = np.vstack([rows, -rows, forces, -forces])
-        sides = np.concatenate([np.tile(self.limits[limited], 2), np.full(6, most)])
+        forces, (rows, sides) = -self.pushes.forces.T, self._rows
+        upper, sides = np.vstack([rows, forces, -forces]), np.append(sides, np.full(6, most))
         moments = self.pushes.wrenches[:, 3:].T
         found = linprog(
             -direction @ forces, upper, sides, moments, np.zeros(3), bounds=(0, None), method="highs"
@@ -161,9 +189,8 @@ class Drives:
         """The solution, and whether it is bounded."""
         from scipy.optimize import linprog
 
-        limited = np.isfinite(self.limits)
-        rows = np.hstack([self.torques[limited], np.zeros((int(limited.sum()), 1))])
-        upper, most = np.vstack([rows, -rows]), np.tile(self.limits[limited], 2)
+        rows, most = self._rows
+        upper = np.hstack([rows, np.zeros((len(rows), 1))])
         found = linprog(
             cost, upper if len(upper) else None, most if len(upper) else None, equalities, sides,
             bounds=(0, None), method="highs",

@@ -44,6 +44,7 @@ def grasp_to_dict(grasp: Grasp, folder: Path) -> Data:
         "features": list(grasp.features),
         "quality": {"least_weight": grasp.quality.least_weight, "epsilon": grasp.quality.epsilon},
         "robust": grasp.robust,
+        "tight": grasp.tight,
         "weakest": None if grasp.weakest is None else _weakest(grasp.weakest),
         "held": None if grasp.held is None else _held(grasp.held),
         "links": dict(grasp.links),

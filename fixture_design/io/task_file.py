@@ -77,8 +77,16 @@ def _task(document: Document, path: Path) -> Task:
 
 
 def task_of_part(path: str | Path, scale: float = 1.0) -> Task:
-    """The task that a part file alone stands for: locate it, let it out, close it, with the fewest elements."""
+    """The task that a part file alone stands for: locate it, let it out, close it, with the fewest elements.
+
+    Raises:
+        FileFormatError: a scale for a URDF file, whose meshes carry their own.
+    """
     path = Path(path)
+    if path.suffix.lower() == ".urdf" and scale != 1:
+        raise FileFormatError(
+            "`scale` is not for URDF", source=path, found=f"{scale:g}", expected="scale=... of its meshes"
+        )
     kinds: dict[str, Literal["urdf", "step"]] = {".urdf": "urdf", ".step": "step", ".stp": "step"}
     kind: Literal["urdf", "step", "mesh"] = kinds.get(path.suffix.lower(), "mesh")
     return Task(path.stem, Part(path.stem, kind, path.absolute(), None, scale, Pose.identity(3)), source=path)

@@ -55,6 +55,74 @@ def test_a_layout_brings_its_part(cube, tmp_path):
     assert _run(JAW, tmp_path / "g.yaml", *AT).exit_code == 0
 
 
+def test_a_refused_grasp_is_written_as_one_and_requires_nothing(cube, tmp_path):
+    for options, code, words in (
+        (["--load", "0,0,-1000"], 3, "undecided: the drives do not hold the load"),
+        (["--table", "0"], 1, "no grasp: "),
+    ):
+        assert _run(JAW, cube, *AT, *options, "-o", tmp_path / "g.yaml").exit_code == code
+        layout = read_layout(tmp_path / "g.yaml")
+        assert words in layout.name
+        told = CliRunner().invoke(app, ["verify", str(tmp_path / "g.yaml")])
+        assert "all requirements hold" not in told.stdout
+        assert words in told.stdout
+    (load,) = [one for one in _written(cube, tmp_path, "--load", "0,0,-10").loads if one.name == "asked for"]
+    assert load.force is not None
+    np.testing.assert_allclose(load.force, [0, 0, -10])
+
+
+def _written(part, folder, *options):
+    assert _run(JAW, part, *AT, *options, "-o", folder / "g.yaml").exit_code == 0
+    return read_layout(folder / "g.yaml")
+
+
+def test_a_layout_brings_its_gravity_and_loads_and_what_it_does_not_bring_is_told(cube, tmp_path):
+    file = tmp_path / "given.yaml"
+    file.write_text(
+        f"schema: fixture_design/layout/1\npart: {{urdf: {cube}, mass: 1}}\ngravity: [0, 0, -9.81]\nfriction: 0.2\n"
+        "elements: [{name: L1, role: locator, at: [0, 0, -0.03]}]\n"
+        "loads: [{name: cutting, point: [0, 0, 0.03], force: [0, 3, -1]}]\n"
+    )
+    layout = _written(file, tmp_path, "--load", "0,0,-10")
+    assert layout.gravity is not None
+    assert layout.gravity[2] == -9.81
+    assert [load.name for load in layout.loads] == ["cutting", "asked for"]
+    told = _run(JAW, file, *AT).stdout
+    for words in (
+        "the layout's gravity and loads goes into the grasp's",
+        "friction 0.2 is left out",
+        "elements, bodies and",
+    ):
+        assert words in told
+
+
+def test_what_is_not_written_is_told(cube, tmp_path):
+    (tmp_path / "g.yaml").write_text("old")
+    found = _run(JAW, cube, "--pose=0,0,-5", "-o", tmp_path / "g.yaml", "--html", tmp_path / "g.html")
+    assert found.exit_code == 1
+    assert "g.yaml, which stays as it was: there is no grasp to write" in found.stderr
+    assert "g.html: there is no grasp to write" in found.stderr
+    assert (tmp_path / "g.yaml").read_text() == "old"
+
+
+@pytest.mark.parametrize("scale", ["nan", "0", "-1", "0.001"])
+def test_a_scale_for_urdf_is_refused(cube, scale):
+    found = _run(JAW, cube, "--scale", scale)
+    assert isinstance(found.exception, InputError)
+    assert "`scale` is not for URDF" in str(found.exception)
+
+
+def test_a_hand_whose_fingertips_are_off_is_bad_input(cube, tmp_path):
+    file = tmp_path / "off.hand.yaml"
+    file.write_text(
+        f"schema: fixture_design/hand/1\nmodel: {JAW}\nfingertips:\n"
+        "  - {name: left, link: left_pad, at: [5, 0, 40], facing: [1, 0, 0]}\n"
+    )
+    found = _run(file, cube)
+    assert isinstance(found.exception, InputError)
+    assert "off link 'left_pad'" in str(found.exception)
+
+
 def test_one_finger_exits_with_3(cube):
     found = _run(public_hand("finger_edu").hand.model, cube)
     assert found.exit_code == 3

@@ -94,7 +94,7 @@ def _sorted(found: Iterable[Thing | Label]) -> tuple[tuple[Thing, ...], tuple[La
 
 def _layers(layout: Layout, things: tuple[Thing, ...]) -> Iterable[Layer]:
     """The legend: only what is there."""
-    feet = {"locator": "block at the foot", "clamp": "knob", "support": "cone", "finger": "ball"}
+    feet = {"locator": "block at the foot", "clamp": "knob", "support": "cone", "finger": "ball at the foot"}
     known = [Layer("part", "part", PART)]
     known += [Layer(f"elements/{role}", f"{role} ({feet[role]})", ROLE_COLORS[role]) for role in ROLES]
     known += [
