@@ -39,13 +39,12 @@ def bare_facets(geometry: PartGeometry, spots: SurfacePoints, spacing: float) ->
     return tuple(facet + 1 for facet in sorted(found))
 
 
-def replaced_on(facets: tuple[int, ...], spots: SurfacePoints, other: SurfacePoints) -> SurfacePoints:
-    """Candidates with those on some facets, by number, exchanged for others."""
-    kept = np.flatnonzero(~np.isin(spots.facets, np.array(facets) - 1))
+def joined(spots: SurfacePoints, more: SurfacePoints) -> SurfacePoints:
+    """Candidates and more of them."""
     return type(spots)(
-        np.vstack([spots.points[kept], other.points]),
-        np.vstack([spots.normals[kept], other.normals]),
-        np.concatenate([spots.facets[kept], other.facets]),
-        (*(spots.features[k] for k in kept), *other.features),
-        (*(spots.provenance[k] for k in kept), *other.provenance),
+        np.vstack([spots.points, more.points]),
+        np.vstack([spots.normals, more.normals]),
+        np.concatenate([spots.facets, more.facets]),
+        (*spots.features, *more.features),
+        (*spots.provenance, *more.provenance),
     )
