@@ -35,22 +35,20 @@ def spatial_contacts(geometry: SpatialGeometry, configuration: Vector) -> tuple[
     found = geometry.equations(q, touching[None]).face_vectors[0, :, :3]
     arms = geometry.arms(q, touching[None])[0]
     at_ends = geometry.at_apices(q, near)[0, touching]
-    contacts, done = [], np.zeros((0, 3))
+    contacts, done = [], set()
     for pair, arm, normal in zip(touching, arms, found, strict=True):
-        if not _in_one_point(arm, arms[at_ends], near):
+        ends = np.flatnonzero(np.linalg.norm(arms[at_ends] - arm, axis=1) <= near)
+        if not ends.size:
             contacts.append(Contact.on_facet(geometry.names[pair], "locator", arm, normal))
-        elif not _in_one_point(arm, done, near):
-            done = np.vstack([done, arm])
-            clauses = tangent_clauses(geometry, q, arm, near)
+        elif not done & set(ends.tolist()):
+            done.update(ends.tolist())
+            point = arms[at_ends][ends[0]]
+            clauses = tangent_clauses(geometry, q, point, near)
             if clauses is None:
                 raise AssemblyError("the parts overlap at this configuration", found=f"{q[0].tolist()}")
             if clauses:
-                contacts.append(Contact(geometry.names[pair], "locator", arm, clauses))
+                contacts.append(Contact(geometry.names[pair], "locator", point, clauses))
     return tuple(contacts)
-
-
-def _in_one_point(arm: np.ndarray, others: np.ndarray, near: float) -> bool:
-    return bool((np.linalg.norm(others - arm, axis=1) <= near).any())
 
 
 def tangent_clauses(

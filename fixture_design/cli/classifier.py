@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from fixture_design.cli.long_work import shown
 from fixture_design.cli.messages import say
 from fixture_design.cli.numbers import at_least_zero, numbers
+from fixture_design.cli.progress import shown
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, read_graph
 

@@ -10,8 +10,9 @@ import typer
 
 from fixture_design.cli.design_report import design_in_words
 from fixture_design.cli.exit_codes import of_answer
-from fixture_design.cli.long_work import interruptible, shown
+from fixture_design.cli.long_work import interruptible
 from fixture_design.cli.messages import say
+from fixture_design.cli.progress import shown
 from fixture_design.design import DesignResult, Task
 from fixture_design.errors import FileFormatError, InputError, UnsupportedError
 from fixture_design.io import (
@@ -44,7 +45,8 @@ def design(
 
     Of a layout: the fewest elements moved, added or removed, and preloads changed, that make its requirements hold.
 
-    Exit code: 0 a layout that holds, 1 there is none, 3 none was found or it is undecided, 2 bad input.
+    Exit code: 0 a layout that holds, 1 there is none, 3 none was found or it is undecided, 2 bad input; 130, 143 or
+    129 after Ctrl-C, a termination or a closed terminal.
     """
     task = _task(task_or_part, scale)
     for path in (out, urdf, csv):

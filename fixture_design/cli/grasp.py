@@ -12,8 +12,9 @@ import typer
 from fixture_design.cli.exit_codes import of_answer
 from fixture_design.cli.grasp_layouts import carried, written
 from fixture_design.cli.grasp_report import grasps_in_words
-from fixture_design.cli.long_work import interruptible, shown
+from fixture_design.cli.long_work import interruptible
 from fixture_design.cli.messages import say
+from fixture_design.cli.progress import shown
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import TASK_ENDINGS, dumps, read_layout, task_of_part, write_layout
 from fixture_design.layout import Layout, Part, Pose

@@ -40,7 +40,7 @@ def _left_out(given: Layout, grasps: tuple[Grasp, ...]) -> Iterator[str]:
     if given.loads or given.gravity is not None:
         both = {"gravity": given.gravity is not None, "loads": bool(given.loads)}
         what = " and ".join(name for name, there in both.items() if there)
-        yield f"the layout's {what} goes into the grasp's, with no say in whether it holds: --load asks for that"
+        yield f"the grasp's layout takes over {what}, with no say in whether it holds: --load asks for that"
     frictions = {grasp.layout.friction for grasp in grasps}
     if given.friction and frictions and frictions != {given.friction}:
         theirs = ", ".join(f"{friction:g}" for friction in sorted(frictions))

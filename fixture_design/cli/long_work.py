@@ -1,19 +1,16 @@
-"""Work that takes its time: progress on stderr, and Ctrl-C or a termination that asks for the best so far."""
+"""Work that takes its time, of which Ctrl-C or a termination asks for the best so far."""
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TextIO
 
 from fixture_design.cli.exit_codes import ExitCode
-from fixture_design.cli.messages import say
-
-#: A file is told no more often than this [s].
-_QUIET = 20.0
 
 
 class Ending:
@@ -31,7 +28,8 @@ class Ending:
     @property
     def code(self) -> ExitCode:
         """What the program ends with then."""
-        return _CODES[signal.Signals(self._by)] if self._by is not None else ExitCode.HOLDS
+        assert self._by is not None
+        return _CODES[signal.Signals(self._by)]
 
 
 _CODES = {
@@ -48,11 +46,16 @@ def interruptible() -> Iterator[Ending]:
     if threading.current_thread() is not threading.main_thread():
         yield ending
         return
-    before = {number: signal.getsignal(number) for number in _CODES}
+    terminals = [stream for stream in (sys.stdout, sys.stderr) if stream.isatty()]
+    # what is ignored stays so, as `nohup` wants it
+    handlers = {number: signal.getsignal(number) for number in _CODES}
+    before = {number: handler for number, handler in handlers.items() if handler not in (None, signal.SIG_IGN)}
 
     def ask(number: int, frame: object) -> None:
         ending.ask(number)
         signal.signal(number, before[signal.Signals(number)])
+        if number == signal.SIGHUP:
+            _to_nowhere(terminals)
 
     for number in before:
         signal.signal(number, ask)
@@ -63,22 +66,9 @@ def interruptible() -> Iterator[Ending]:
             signal.signal(number, handler)
 
 
-class _Progress:
-    """Progress on stderr: on a terminal one line that the next one replaces, in a file a line every 20 seconds."""
-
-    def __init__(self) -> None:
-        self._told = time.monotonic()
-
-    def __call__(self, words: str, part: float | None = None) -> None:
-        """Tell how far the work is, in words, and which part of it is done; no words take the line away."""
-        line = words if part is None or not words else f"{words} ({part:.0%})"
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r\033[K{line}")
-            sys.stderr.flush()
-        elif line and time.monotonic() - self._told > _QUIET:
-            self._told = time.monotonic()
-            say(line)
-
-
-#: The program's.
-shown = _Progress()
+def _to_nowhere(streams: list[TextIO]) -> None:
+    """What is still said after the terminal was closed is read by nobody, and must not end the program."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in streams:
+        os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)

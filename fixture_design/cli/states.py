@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode
-from fixture_design.cli.long_work import shown
 from fixture_design.cli.messages import say
+from fixture_design.cli.progress import shown
 from fixture_design.cli.state_path import say_path
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, read_assembly, read_graph, write_graph, write_graphml

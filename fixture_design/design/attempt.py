@@ -172,6 +172,7 @@ def _past_locators(
         passed = way_out(asked.task, asked.ways, problem, outcome.found, result.verdict)
         return result if passed is None else replace(result, out=passed)
     assert outcome.found.out is not None
+    result = replace(result, out=None)  # something is in that way
     blocking = [index for index in outcome.found.locators.tolist() if hit[index]]
     where = ", ".join(f"{names[index]} on {problem.candidates.features[index]}" for index in blocking)
     if len(problem.barred) == MOST_BARRED:

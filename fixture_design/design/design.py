@@ -43,7 +43,7 @@ def design(
     ways = ways or ways_of(task.part, task.surface_gap)
     asked = Asked(task, ways, seed, progress, cancelled)
     best = _searched(asked)
-    if best.satisfied is Answer.YES or not task.candidates.more_tips or cancelled():
+    if best.satisfied is not Answer.UNDECIDED or not task.candidates.more_tips or cancelled():
         return best
     simpler = replace(asked, task=replace(task, candidates=replace(task.candidates, more_tips=())))
     found = _searched(simpler)

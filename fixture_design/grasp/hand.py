@@ -115,6 +115,7 @@ class Joint:
         kind: "revolute" or "prismatic".
         lower, upper: finite [rad or m].  effort: inf where nobody gives one [N m or N].
         follows, multiplier, offset: as in `JointRule`; ``follows`` is None for joints that move on their own.
+        unlimited: whether nobody gives limits, so that ``lower`` and ``upper`` are where it is looked for and no stops.
     """
 
     name: str
@@ -125,6 +126,7 @@ class Joint:
     follows: str | None = None
     multiplier: float = 1.0
     offset: float = 0.0
+    unlimited: bool = False
 
 
 class HandError(InputError):

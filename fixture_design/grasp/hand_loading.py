@@ -130,15 +130,25 @@ def _joint(found: Any, of_file: JointRule | None, of_sidecar: JointRule | None, 
         raise HandError(problem, source=hand.model, place=place, found=kind, expected=expected)
     most = _UNLIMITED[kind]
     low, high = float(found.position_lower_limits()[0]), float(found.position_upper_limits()[0])
+    unlimited = not (math.isfinite(low) or math.isfinite(high))
     low, high = (low if math.isfinite(low) else -most), (high if math.isfinite(high) else most)
     given, said = of_file or JointRule(), of_sidecar or JointRule()
     by = said if said.follows is not None else given
     effort = said.effort or given.effort
+    unlimited = unlimited and said.lower is None and said.upper is None
     low, high = (low if said.lower is None else said.lower), (high if said.upper is None else said.upper)
     if low > high:
         raise HandError(f"joint {found.name()!r} has no range", source=hand.source, found=f"from {low:g} to {high:g}")
     return Joint(
-        found.name(), kind, low, high, math.inf if effort is None else effort, by.follows, by.multiplier, by.offset
+        found.name(),
+        kind,
+        low,
+        high,
+        math.inf if effort is None else effort,
+        by.follows,
+        by.multiplier,
+        by.offset,
+        unlimited,
     )
 
 

@@ -147,10 +147,7 @@ def _contacts_at(
     surface.look(places)
     for place in places:
         distance, foot = surface.nearest(place)
-        # off the surface its normal is along the way to it: most places are settled by that
-        if not -behind <= distance - tip.radius <= ahead or (
-            abs(distance) > _SEEN_FROM and (place - foot) @ facing / distance > steepest + _SEEN_TO
-        ):
+        if not -behind <= distance - tip.radius <= ahead or _faces_away(place - foot, distance, facing, steepest):
             continue
         try:
             local = surface.local(foot)
@@ -160,6 +157,16 @@ def _contacts_at(
         if local.shape == "flat" and normal @ facing <= steepest:
             found.append(Contact(tip.name, "finger", foot, ((normal,),), friction, torsion=torsion))
     return found
+
+
+def _faces_away(away: Float[np.ndarray, 3], distance: float, facing: Float[np.ndarray, 3], steepest: float) -> bool:
+    """Whether a place off the surface shows already that the normal there is too far from facing the finger.
+
+    The normal is along the way to the foot, if this is as long as the distance: on round surfaces the foot may be on
+    the true surface and the distance that to a facet.
+    """
+    seen = abs(distance) > _SEEN_FROM and abs(float(np.linalg.norm(away)) - abs(distance)) <= _SEEN_FROM / 10
+    return bool(seen and away @ facing / distance > steepest + _SEEN_TO)
 
 
 def _closes(contacts: Sequence[Contact], surface: SolidSurface) -> bool:

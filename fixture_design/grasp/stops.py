@@ -23,7 +23,9 @@ from fixture_design.tolerances import FINGER_GAP
 def room(model: HandModel, q: Weights) -> Float[np.ndarray, "f 2"]:
     """How far each joint that moves on its own can go down and up, with those that follow it [rad or m]."""
     matrix, _ = model.following
-    below, above = np.maximum(q - model.lower, 0.0)[:, None], np.maximum(model.upper - q, 0.0)[:, None]
+    endless = np.array([joint.unlimited for joint in model.joints])
+    below = np.where(endless, np.inf, np.maximum(q - model.lower, 0.0))[:, None]
+    above = np.where(endless, np.inf, np.maximum(model.upper - q, 0.0))[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         down = np.where(matrix > 0, below / matrix, np.where(matrix < 0, above / -matrix, np.inf))
         up = np.where(matrix > 0, above / matrix, np.where(matrix < 0, below / -matrix, np.inf))

@@ -148,7 +148,9 @@ def _branches(contacts: tuple[Contact, ...], plane: int) -> list[tuple[np.ndarra
     clauses = [(contact.point, clause) for contact in contacts for clause in contact.clauses]
     choices = prod(len(clause) for _, clause in clauses)
     if choices > MOST_CHOICES:
-        raise UnsupportedError(f"{choices} cones make the forces of one sample", expected=f"at most {MOST_CHOICES}")
+        names = ", ".join(contact.name for contact in contacts)
+        problem = f"{choices} cones make the forces of one sample of the state with {names}"
+        raise UnsupportedError(problem, expected=f"at most {MOST_CHOICES}")
     points = np.array([point for point, _ in clauses]).reshape(-1, plane)
     return [(points, np.array(choice).reshape(-1, plane)) for choice in product(*(clause for _, clause in clauses))]
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from fixture_design.assembly import ContactState, ContactStateGraph
 from fixture_design.assembly.contact_geometry import ContactGeometry
+from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.recognition.chart import chart_of, spread
 from fixture_design.recognition.checking import displacements_outside, forces_outside
 from fixture_design.recognition.measurement import Interpolation, MeasurementSet, Widening, measurement_set
@@ -86,11 +87,11 @@ def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactSta
 
 
 def _pairs_alone(geometry: ContactGeometry, state: ContactState) -> bool:
-    """Whether every pair that touches is a contact of its own: no apices in one point, in space no apex on a rim."""
-    if state.coincident or geometry.dimension == 3:
+    """Whether every pair that touches is a contact of its own: no apices in one point, of polyhedra none on a rim."""
+    if state.coincident or not isinstance(geometry, SpatialGeometry):
         return not state.coincident
-    at_ends = geometry.at_apices(state.samples[:1], TOUCHING * geometry.size)[0]
-    return not any(at_ends[geometry.names.index(name)] for name in state.contacts)
+    pairs = [geometry.names.index(name) for name in state.contacts]
+    return not geometry.at_apices(state.samples, TOUCHING * geometry.size)[:, pairs].any()
 
 
 def _cones(geometry: ContactGeometry, state: ContactState, q: np.ndarray, recipe: Recipe) -> SampleCones:

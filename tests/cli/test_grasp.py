@@ -89,7 +89,7 @@ def test_a_layout_brings_its_gravity_and_loads_and_what_it_does_not_bring_is_tol
     assert [load.name for load in layout.loads] == ["cutting", "asked for"]
     told = _run(JAW, file, *AT).stdout
     for words in (
-        "the layout's gravity and loads goes into the grasp's",
+        "the grasp's layout takes over gravity and loads",
         "friction 0.2 is left out",
         "elements, bodies and",
     ):
