@@ -118,7 +118,8 @@ def way_out(task: Task, ways: Ways, problem: Problem, found: Found, verdict: Ver
     use = _ways_out(verdict)
     tried = [found.out]
     if task.limits.loading is None and use is not None and use.obstacle is None:
-        tried.append(use.direction)
+        # of what is kept the verdict looks at the bodies too
+        tried = [use.direction, found.out] if len(problem.kept) else [found.out, use.direction]
     new = found.locators[np.isin(found.locators, problem.new)]
     fitting = (way for way in tried if way is not None and _fits(task, ways, problem.candidates, new, way).all())
     return next(fitting, None)
