@@ -7,7 +7,6 @@ judged (`judging`). Of each family, the fingers on the same features, the best s
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from itertools import islice
@@ -38,7 +37,7 @@ TRIES = 160
 #: Sets whose seeds are looked up.
 _SETS = 1500
 
-#: How often a family is tried again whose best grasp leaves little of the friction.
+#: Rounds more, where grasps are enough but some leave little of the friction.
 _AGAIN = 4
 
 #: What a region is called by the best verdict there.
@@ -195,19 +194,20 @@ class _Run:
     def _look(self, library: Library, wanted: Iterable[Wanted]) -> None:
         """Drafts are made and judged until there are as many grasps as are wanted, or enough was tried.
 
-        What turns out undecided, or not to hold the load, does not count, and its family is tried again; families whose
-        best leaves little of the friction are tried some times more.
+        What turns out undecided, or not to hold the load, does not count, and its family is tried again; so are, for
+        some rounds, families whose best leaves little of the friction.
         """
         drafts = self.attempts.drafts(library, wanted)
-        again: Counter[tuple[str, ...]] = Counter()
+        left = _AGAIN
         while more := list(islice(drafts, DRAFTS * max(1, self.search.most - len(self.finds.good)))):
             self.finds.judge(more)
-            tight = {features for features in self.finds.tight() if again[features] < _AGAIN}
-            again.update(tight)
+            tight = self.finds.tight()
+            found = len(self.finds.good)
+            if len({*self.finds.good} - tight) >= self.search.most or (found >= self.search.most and not left):
+                return
+            left -= found >= self.search.most
             for features in {*self.finds.best} - {*self.finds.good} | tight:
                 del self.attempts.full[features]
-            if len(self.finds.good) >= self.search.most and not tight:
-                return
 
     def _became(self, features: tuple[str, str]) -> str:
         """What became of a region."""
