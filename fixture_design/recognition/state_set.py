@@ -65,16 +65,19 @@ def state_set(
     has the extremes of its forces. Configurations between these and the state's ends may be further out: of some 200 to
     320 fresh ones of a state of Figure 14 with coincident apices and friction 0.2 none to nine, by 0.023 at most.
     """
-    pool = _pool(graph, geometry, state, recipe)
-    cones = _cones(geometry, state, pool, recipe)
+    alone = _pairs_alone(geometry, state)
+    pool = _pool(graph, geometry, state, recipe, alone)
+    cones = _cones(geometry, state, pool, recipe, alone)
     if recipe.interpolation != "neighbours":
         groups = [tuple(range(len(pool)))] if recipe.interpolation == "hull" else [(k,) for k in range(len(pool))]
         found = measurement_set(cones, groups, recipe.signals)
         return found.widened(Widening(_largest(_force_outside(found, cones, recipe)), 0.0))
-    return _interpolated(geometry, state, cones, recipe)
+    return _interpolated(geometry, state, cones, recipe, alone)
 
 
-def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe) -> np.ndarray:
+def _pool(
+    graph: ContactStateGraph, geometry: ContactGeometry, state: ContactState, recipe: Recipe, alone: bool
+) -> np.ndarray:
     """Configurations to choose from: the graph's samples; with interpolation the closure's and denser ones too."""
     if recipe.interpolation != "neighbours":
         return state.samples
@@ -83,7 +86,7 @@ def _pool(graph: ContactStateGraph, geometry: ContactGeometry, state: ContactSta
     denser, _ = equations.onto(geometry.random(rng, _DENSER))
     tighter = [other.samples for other in graph.states if set(state.contacts) < set(other.contacts)]
     # two apices in one point are one contact with clauses of its own; what more touches is not that contact's
-    return np.concatenate([state.samples, denser, *(tighter if _pairs_alone(geometry, state) else [])])
+    return np.concatenate([state.samples, denser, *(tighter if alone else [])])
 
 
 def _pairs_alone(geometry: ContactGeometry, state: ContactState) -> bool:
@@ -94,14 +97,16 @@ def _pairs_alone(geometry: ContactGeometry, state: ContactState) -> bool:
     return not geometry.at_apices(state.samples, TOUCHING * geometry.size)[:, pairs].any()
 
 
-def _cones(geometry: ContactGeometry, state: ContactState, q: np.ndarray, recipe: Recipe) -> SampleCones:
-    return sample_cones(geometry, state.contacts, q, _pairs_alone(geometry, state), recipe.signals, recipe.physics)
+def _cones(geometry: ContactGeometry, state: ContactState, q: np.ndarray, recipe: Recipe, alone: bool) -> SampleCones:
+    return sample_cones(geometry, state.contacts, q, alone, recipe.signals, recipe.physics)
 
 
-def _interpolated(geometry: ContactGeometry, state: ContactState, pool: SampleCones, recipe: Recipe) -> MeasurementSet:
+def _interpolated(
+    geometry: ContactGeometry, state: ContactState, pool: SampleCones, recipe: Recipe, alone: bool
+) -> MeasurementSet:
     """Spread samples, their simplices, and the samples that stick out added until few do."""
     equations = StateEquations.of(geometry, state.contacts)
-    chart = chart_of(geometry, state.contacts, pool, _pairs_alone(geometry, state))
+    chart = chart_of(geometry, state.contacts, pool, alone)
     chosen = spread(chart.points, recipe.spacing)
     for _ in range(_ROUNDS):
         part = pool.taking(chosen)
@@ -115,7 +120,7 @@ def _interpolated(geometry: ContactGeometry, state: ContactState, pool: SampleCo
     part = pool.taking(chosen)
     simplices = simplices_of(chart, chosen, part.q, equations)
     found = measurement_set(part, simplices.members, recipe.signals)
-    middles = _cones(geometry, state, simplices.middles, recipe)
+    middles = _cones(geometry, state, simplices.middles, recipe, alone)
     widening = Widening(
         _largest(_force_outside(found, pool + middles, recipe)),
         _displacements(part, simplices, chart.points, chart.points[chosen], pool, recipe),

@@ -11,12 +11,12 @@ import time
 
 import numpy as np
 
-from fixture_design.geometry import PartGeometry, load_part
+from fixture_design.geometry import PartGeometry
 from fixture_design.grasp import HandModel, Search
 from fixture_design.grasp.search import grasp
-from fixture_design.layout import Answer, Part, Pose
+from fixture_design.layout import Answer, Part
 from fixture_design.simulation.grasp_shake import shaken
-from tests.benchmarks.test_grasps import PARTS
+from tests.benchmarks.test_grasps import PARTS, public_part
 from tests.grasp.hands import JAW, PUBLIC, SHARED, THREE, model_of, primitive
 
 HANDS = {"parallel_jaw": JAW, "three_finger": THREE, **{name: SHARED / path for name, path in PUBLIC.items()}}
@@ -24,18 +24,12 @@ HANDS = {"parallel_jaw": JAW, "three_finger": THREE, **{name: SHARED / path for 
 PRIMITIVES = ("cube", "cylinder", "sphere")
 
 
-def mesh(name: str) -> tuple[Part, PartGeometry]:
-    path, scale = PARTS[name]
-    part = Part(name, "mesh", SHARED / path, None, scale, Pose.identity(3))
-    return part, load_part(part)
-
-
 def main(seed: int) -> None:
-    parts = {name: primitive(name) for name in PRIMITIVES} | {"featuretype, halved": mesh("featuretype")}
+    parts = {name: primitive(name) for name in PRIMITIVES} | {"featuretype, halved": public_part("featuretype")}
     for name, file in HANDS.items():
         for label, (part, geometry) in parts.items():
             print(f"{name:14}{label:22}{_found_and_kept(model_of(file), part, geometry, seed)}", flush=True)
-    parts = {name: primitive(name) for name in PRIMITIVES} | {name: mesh(name) for name in PARTS}
+    parts = {name: primitive(name) for name in PRIMITIVES} | {name: public_part(name) for name in PARTS}
     times, found = [], 0
     for file in (JAW, THREE):
         for part, geometry in parts.values():
