@@ -167,9 +167,9 @@ def _past_locators(
         return without_layout(problem, outcome, bound, start, asked.seed)
     result, names = _drawn_up(asked, problem, outcome, bound, start, plan)
     assert result.verdict is not None
-    hit = in_the_way(asked.task, asked.ways, problem, outcome.found, result.verdict, names)
+    passed = way_out(asked.task, asked.ways, problem, outcome.found, result.verdict)
+    hit = in_the_way(asked.task, asked.ways, problem, outcome.found, result.verdict, names, passed)
     if hit is None or problem.cancelled():
-        passed = way_out(asked.task, asked.ways, problem, outcome.found, result.verdict)
         return result if passed is None else replace(result, out=passed)
     assert outcome.found.out is not None
     result = replace(result, out=None)  # something is in that way

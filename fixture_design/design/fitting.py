@@ -91,18 +91,23 @@ def _fits(task: Task, ways: Ways, candidates: Candidates, which: Indices, out: P
     return free
 
 
-def in_the_way(task: Task, ways: Ways, problem: Problem, found: Found, verdict: Verdict, names: Names) -> Mask | None:
+def in_the_way(
+    task: Task, ways: Ways, problem: Problem, found: Found, verdict: Verdict, names: Names, passed: Point | None
+) -> Mask | None:
     """Candidates that the part runs into on its way out, shape (n,); None if it comes out past the locators chosen.
 
     What is in the way is the tip of a locator, as the verdict has it, or a tip, stem or body in the direction of the
     verdict, or in that of the search; where a direction is asked for, in this one. If one is, all candidates are asked
     at once, so that the next locator does not stand where the same thing happens.
+
+    Args:
+        passed: the `way_out`.
     """
     if found.out is None:
         return None
     new = found.locators[np.isin(found.locators, problem.new)]
     blocking = _tips(_ways_out(verdict), new, names)
-    if not len(blocking) and way_out(task, ways, problem, found, verdict) is not None:
+    if not len(blocking) and passed is not None:
         return None
     hit = np.zeros(len(problem.candidates), dtype=bool)
     hit[problem.new] = ~_fits(task, ways, problem.candidates, problem.new, found.out)
@@ -113,7 +118,7 @@ def in_the_way(task: Task, ways: Ways, problem: Problem, found: Found, verdict: 
 def way_out(task: Task, ways: Ways, problem: Problem, found: Found, verdict: Verdict) -> Point | None:
     """The direction of the search, or that of the verdict, in which the part passes the new locators with their bodies.
 
-    None: in neither, or none was asked for. Where a direction is asked for, it is that of the search.
+    None: in neither. Where a direction is asked for, it is that of the search.
     """
     use = _ways_out(verdict)
     tried = [found.out]
