@@ -100,3 +100,9 @@ class Assembly:
     region: Region | None = None
     source: Path | None = None
     data: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files it is made of: its own, and those of meshes and URDFs."""
+        bodies = (body.file for body in (self.moving, *self.fixed))
+        return tuple(file for file in (self.source, *bodies) if file is not None)

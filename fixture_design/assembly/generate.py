@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 
@@ -60,11 +61,9 @@ def state_graph(
     known = KnownStates(geometry, symmetries, _EXPANDED)
     counts: dict[State, int] = {}
     finished = False
-    try:
+    with suppress(KeyboardInterrupt):  # what was found is kept, and `complete` tells
         _search(known, counts, np.random.default_rng(seed), samples, progress)
         finished = True
-    except KeyboardInterrupt:
-        progress("interrupted: keeping what was found")
     known = unfolded(known)
     return _graph(assembly, known, unseen(known.samples, counts), seed, finished)
 

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import signal
-import sys
-from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode, worst
+from fixture_design.cli.long_work import Ending, interruptible
 from fixture_design.cli.messages import say
-from fixture_design.errors import FileFormatError, InputError
+from fixture_design.errors import InputError
 from fixture_design.io import dumps
+from fixture_design.io.outputs import check_outputs
 
 _CODES = {
     "internal error": ExitCode.INTERNAL_ERROR,
@@ -69,9 +65,9 @@ def batch(
     """Verify thousands of layouts, in worker processes; a run that was stopped goes on where it was.
 
     Exit code, the first that is true of some layout: 4 internal error, 2 bad input, 1 a requirement fails, 3
-    undecided; else 0; 130 if it was interrupted, 143 if it was terminated.
+    undecided; else 0; 130, 143 or 129 after Ctrl-C, a termination or a closed terminal.
     """
-    with _interrupts() as ended:
+    with interruptible() as ended:
         _run(
             paths, output, brief, sets, jobs, limit, retry, cluster, report, table, against, as_json, ended
         )  # fmt: skip
@@ -90,7 +86,7 @@ def _run(
     table: Path | None,
     against: Path | None,
     as_json: bool,
-    ended: Callable[[], int | None],
+    ended: Ending,
 ) -> None:
     from fixture_design.batch import detail_wanted, input_files, local_workers, run_batch, total_share  # noqa: PLC0415
     from fixture_design.batch.against import compare  # noqa: PLC0415 - after the arguments are known good
@@ -113,7 +109,7 @@ def _run(
     workers = local_workers(detail, jobs, limit) if cluster is None else Cluster(cluster, detail)
     summary = run_batch(
         files, output, workers,
-        detail=detail, watch=progress.add, ready=progress.resumed, retry=retry, stop=lambda: ended() is not None,
+        detail=detail, watch=progress.add, ready=progress.resumed, retry=retry, stop=ended,
     )  # fmt: skip
     progress.close()
     comparison = compare(output, against) if against is not None and not summary.interrupted else None
@@ -132,7 +128,7 @@ def _run(
     if summary.interrupted:
         records = "1 record is" if summary.count == 1 else f"{summary.count} records are"
         say(f"{records} in {output}; the same command goes on from there")
-        raise typer.Exit(ExitCode.TERMINATED if ended() == signal.SIGTERM else ExitCode.INTERRUPTED)
+        raise typer.Exit(ended.code)
     raise typer.Exit(worst(_CODES[outcome] for outcome in summary.outcomes))
 
 
@@ -146,44 +142,9 @@ def _check_others(
     """
     from fixture_design.batch.results import records_in  # noqa: PLC0415
     from fixture_design.batch.table import check_table  # noqa: PLC0415
-    from fixture_design.viewing import refuse_inputs  # noqa: PLC0415
 
-    named = [path for path in (output, report, table, against) if path is not None]
-    places = Counter(os.path.realpath(path) for path in named)
-    for path in named:
-        if places[os.path.realpath(path)] > 1:  # also where it is not there yet
-            raise FileFormatError("this file is named twice, and one would be lost", source=path,
-                                  expected="a name of its own for each of output, report, table, against")  # fmt: skip
-    read = [*inputs, *([against] if against else [])]
-    refuse_inputs(output, [against] if against else [])
-    for written in filter(None, (report, table)):
-        refuse_inputs(written, [*read, output])
-        if written.is_dir() or not written.absolute().parent.is_dir():
-            raise FileFormatError("the file cannot be written: no such folder, or a folder itself", source=written)
+    check_outputs((output, report, table), (*inputs, against))
     if table is not None:
         check_table(table)
     if against is not None:
         next(records_in(against), None)
-
-
-@contextmanager
-def _interrupts() -> Iterator[Callable[[], int | None]]:
-    """In here Ctrl-C and SIGTERM are only remembered: the function tells the first one; a second ends the process."""
-    told: list[int] = []
-
-    def hear(number: int, frame: object) -> None:
-        if told:
-            signal.signal(number, signal.SIG_DFL)
-            signal.raise_signal(number)
-        told.append(number)
-
-    try:
-        before = {number: signal.signal(number, hear) for number in (signal.SIGINT, signal.SIGTERM)}
-    except ValueError:  # not the main thread: signals are somebody else's
-        before = {}
-    try:
-        yield lambda: told[0] if told else None
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        sys.stderr.flush()

@@ -13,6 +13,7 @@ from fixture_design.cli.numbers import at_least_zero, numbers
 from fixture_design.cli.progress import shown
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, read_graph
+from fixture_design.io.outputs import check_outputs
 
 if TYPE_CHECKING:
     from fixture_design.recognition import Classifier
@@ -65,6 +66,7 @@ def classifier(
     _require_used(measure, mass, floor, twist_noise)
     if not discriminants and (fewest or c_file or python_file):
         raise InputError("--fewest, --c and --python are about discriminants, and --no-discriminants leaves them out")
+    check_outputs((out, c_file, python_file), (graph,))
     known = read_graph(graph)
     if noise > 0 and floor == 0 and mass == 0 and measure != "displacement":
         say("--noise without --floor: forces of a part in free air are noise, and fit no state or a wrong one; "

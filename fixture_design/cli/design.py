@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +25,7 @@ from fixture_design.io import (
 )
 from fixture_design.io import write_csv as save_csv
 from fixture_design.io import write_urdf as save_urdf
+from fixture_design.io.outputs import check_outputs
 from fixture_design.layout import Layout
 
 _GIVEN = "Task file, a part (STL, OBJ, ..., URDF), or a layout to repair."
@@ -49,9 +49,7 @@ def design(
     129 after Ctrl-C, a termination or a closed terminal.
     """
     task = _task(task_or_part, scale)
-    for path in (out, urdf, csv):
-        _check_target(path, task)
-    _check_apart([path for path in (out, urdf, csv) if path is not None])
+    check_outputs((out, urdf, csv), _inputs(task))
     if urdf is not None and task.space == "planar":
         raise UnsupportedError("a planar layout has no URDF form", source=task.source, expected="`--csv`")
     from fixture_design.design import design as design_layout  # noqa: PLC0415 - after the arguments are known good
@@ -80,24 +78,9 @@ def _task(path: Path, scale: float) -> Task | Layout:
     return read_task_or_layout(path)
 
 
-def _check_target(path: Path | None, task: Task | Layout) -> None:
-    """An output must not be one of the inputs, and its folder must be there, before any work is done."""
-    if path is None:
-        return
+def _inputs(task: Task | Layout) -> tuple[Path | None, ...]:
     start = task.start.source if isinstance(task, Task) and task.start is not None else None
-    part = None if task.part is None else task.part.file
-    for given in (task.source, part, start):
-        if given is not None and os.path.realpath(given) == os.path.realpath(path):
-            raise FileFormatError("this would overwrite an input", source=path, expected="another name")
-    if not path.absolute().parent.is_dir():
-        raise FileFormatError("the folder to write to is not there", source=path, expected="an existing folder")
-
-
-def _check_apart(paths: list[Path]) -> None:
-    real = [os.path.realpath(path) for path in paths]
-    for number, path in enumerate(paths):
-        if real[number] in real[:number]:
-            raise FileFormatError("two outputs would go to one file", source=path, expected="another name for each")
+    return task.source, None if task.part is None else task.part.file, start
 
 
 def _write(result: DesignResult, task: Task | Layout, out: Path | None, urdf: Path | None, csv: Path | None) -> None:

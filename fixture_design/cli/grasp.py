@@ -17,6 +17,7 @@ from fixture_design.cli.messages import say
 from fixture_design.cli.progress import shown
 from fixture_design.errors import FileFormatError, InputError
 from fixture_design.io import TASK_ENDINGS, dumps, read_layout, task_of_part, write_layout
+from fixture_design.io.outputs import check_outputs
 from fixture_design.layout import Layout, Part, Pose
 
 if TYPE_CHECKING:
@@ -68,8 +69,7 @@ def grasp(
     of_part = _layout_of(part, scale)
     held_part = of_part.part
     assert held_part is not None  # refused without one
-    _check_target(out, (hand, part, read.model, held_part.file))
-    _check_target(html, (hand, part, read.model, held_part.file), out)
+    check_outputs((out, html), (hand, part, read.model, held_part.file))
     if html is not None and html.suffix.lower() not in _PAGES:
         raise FileFormatError("pages are HTML, and pictures PNG", source=html, expected="a name with .html or .png")
     with interruptible() as cancelled:
@@ -157,18 +157,6 @@ def _numbers(text: str, counts: tuple[int, ...], option: str) -> list[float]:
     if len(numbers) not in counts or not np.isfinite(numbers).all():
         raise InputError(f"{option} cannot be used", found=repr(text), expected=expected)
     return numbers
-
-
-def _check_target(path: Path | None, inputs: Sequence[Path | None], other: Path | None = None) -> None:
-    """An output must not be one of the inputs or another output, and its folder must be there, before any work."""
-    if path is None:
-        return
-    if other is not None and other.resolve() == path.resolve():
-        raise FileFormatError("--out and --html are the same file", source=path, expected="two names")
-    if any(given is not None and given.resolve() == path.resolve() for given in inputs):
-        raise FileFormatError("this would overwrite an input", source=path, expected="another name")
-    if not path.absolute().parent.is_dir():
-        raise FileFormatError("the folder to write to is not there", source=path, expected="an existing folder")
 
 
 def _write(result: GraspResult, out: Path | None, html: Path | None) -> None:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.long_work import interruptible
 from fixture_design.cli.messages import printable, say
 from fixture_design.errors import InputError
 
@@ -34,7 +31,7 @@ def interactive(
     """
     from fixture_design.viewing.session import Live, Steering, begun  # noqa: PLC0415 - after the arguments are known
 
-    with _ended_by_signals() as ended:
+    with interruptible(patient=True) as ended:
         try:
             steering = begun(Steering, layout_or_part, scale, out)
             live = Live(steering, port)
@@ -42,31 +39,9 @@ def interactive(
             raise error.within(layout_or_part) from error
         try:
             typer.echo(f"{live.address} (quit there, or Ctrl-C here)")
-            live.run(lambda: ended() is not None)
+            live.run(ended)
         finally:
             path = steering.leave()
             if path is not None:
                 say(f"unsaved changes are in {printable(str(path))}")
-    number = ended()
-    raise typer.Exit(ExitCode.HOLDS if number is None else _ENDING[signal.Signals(number).name])
-
-
-#: What asks for the end, as far as the system knows it: Ctrl-C, the system, a terminal that is closed.
-_ENDING = {"SIGINT": ExitCode.INTERRUPTED, "SIGTERM": ExitCode.TERMINATED, "SIGHUP": ExitCode.HUNG_UP}
-
-
-@contextmanager
-def _ended_by_signals() -> Iterator[Callable[[], int | None]]:
-    """Signals that ask for the end, so that nothing is lost; the number of the one that came first."""
-    came: list[int] = []
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: None
-        return
-    before = {number: signal.getsignal(number) for number in signal.Signals if number.name in _ENDING}
-    for number in before:
-        signal.signal(number, lambda number, frame: came.append(number))
-    try:
-        yield lambda: came[0] if came else None
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    raise typer.Exit(ended.code if ended() else ExitCode.HOLDS)

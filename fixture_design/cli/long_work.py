@@ -12,6 +12,17 @@ from typing import TextIO
 
 from fixture_design.cli.exit_codes import ExitCode
 
+#: What asks for the end, as far as the system knows it: Ctrl-C, the system, a terminal that is closed.
+_CODES = {
+    getattr(signal, name): code
+    for name, code in (
+        ("SIGINT", ExitCode.INTERRUPTED),
+        ("SIGTERM", ExitCode.TERMINATED),
+        ("SIGHUP", ExitCode.HUNG_UP),
+    )
+    if hasattr(signal, name)
+}
+
 
 class Ending:
     """Whether the program was asked to end, and by what."""
@@ -23,25 +34,23 @@ class Ending:
         return self._by is not None
 
     def ask(self, number: int) -> None:
-        self._by = number
+        if self._by is None:
+            self._by = number
 
     @property
     def code(self) -> ExitCode:
-        """What the program ends with then."""
-        assert self._by is not None
-        return _CODES[signal.Signals(self._by)]
-
-
-_CODES = {
-    signal.SIGINT: ExitCode.INTERRUPTED,
-    signal.SIGTERM: ExitCode.TERMINATED,
-    signal.SIGHUP: ExitCode.HUNG_UP,
-}
+        """What the program ends with then; as after Ctrl-C where it was stopped without a signal."""
+        return ExitCode.INTERRUPTED if self._by is None else _CODES[signal.Signals(self._by)]
 
 
 @contextmanager
-def interruptible() -> Iterator[Ending]:
-    """Ctrl-C, a termination, or a closed terminal, once asks for the best so far; twice ends the program as ever."""
+def interruptible(*, patient: bool = False, raising: bool = False) -> Iterator[Ending]:
+    """Ctrl-C, a termination, or a closed terminal, once asks for the best so far; twice ends the program as ever.
+
+    Args:
+        patient: twice is as once, where the end itself saves something.
+        raising: KeyboardInterrupt is raised besides, for work that does not ask.
+    """
     ending = Ending()
     if threading.current_thread() is not threading.main_thread():
         yield ending
@@ -53,9 +62,12 @@ def interruptible() -> Iterator[Ending]:
 
     def ask(number: int, frame: object) -> None:
         ending.ask(number)
-        signal.signal(number, before[signal.Signals(number)])
-        if number == signal.SIGHUP:
+        if not patient:
+            signal.signal(number, before[signal.Signals(number)])
+        if _CODES[signal.Signals(number)] is ExitCode.HUNG_UP:
             _to_nowhere(terminals)
+        if raising:
+            raise KeyboardInterrupt
 
     for number in before:
         signal.signal(number, ask)

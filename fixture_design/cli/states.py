@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fixture_design.cli.exit_codes import ExitCode
+from fixture_design.cli.long_work import interruptible
 from fixture_design.cli.messages import say
 from fixture_design.cli.progress import shown
 from fixture_design.cli.state_path import say_path
 from fixture_design.errors import InputError
 from fixture_design.io import dumps, read_assembly, read_graph, write_graph, write_graphml
 from fixture_design.io.graph_file import is_graph
+from fixture_design.io.outputs import check_outputs
 from fixture_design.io.state_records import graph_with_control
 
 if TYPE_CHECKING:
@@ -53,15 +54,17 @@ def states(
 
     With --json each state has the sets of hybrid position/force control at its first configuration.
 
-    Exit code: 0, 1 no path was found, 2 bad input, 130 interrupted after saving what was found.
+    Exit code: 0, 1 no path was found, 2 bad input; 130, 143 or 129 after Ctrl-C, a
+    termination or a closed terminal, after saving what was found.
     """
     given = read_graph(assembly) if is_graph(assembly) else None
     parts = read_assembly(assembly) if given is None else given.assembly
+    check_outputs((out, graphml, png), (assembly, *parts.files))
     try:
         if at is not None:
             _say_state(parts, at, within, as_json)
             return
-        graph = given or _found(parts, seed, samples)
+        graph, code = _found(parts, seed, samples) if given is None else (given, ExitCode.HOLDS)
     except InputError as error:
         raise error.within(assembly) from error
     if out is not None:
@@ -78,25 +81,22 @@ def states(
         typer.echo(dumps(graph_with_control(graph)))
     else:
         _print_graph(graph)
-    if not graph.complete:
-        raise typer.Exit(ExitCode.INTERRUPTED)
+    raise typer.Exit(code)
 
 
-def _found(assembly: Assembly, seed: int, samples: int) -> ContactStateGraph:
-    """The graph; Ctrl-C ends the search here, not the program, so that what was found is kept."""
+def _found(assembly: Assembly, seed: int, samples: int) -> tuple[ContactStateGraph, ExitCode]:
+    """The graph; Ctrl-C and the like end the search here, not the program, so that what was found is kept."""
     from fixture_design.assembly import state_graph  # noqa: PLC0415 - after the arguments are known good
 
-    before = signal.getsignal(signal.SIGINT)
-    if before is not None and before is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        graph = state_graph(assembly, seed=seed, samples=samples, progress=shown)
-    finally:
-        shown("")
-        signal.signal(signal.SIGINT, before)
-    if not graph.complete:
-        say("interrupted: keeping what was found")
-    return graph
+    with interruptible(raising=True) as ended:
+        try:
+            graph = state_graph(assembly, seed=seed, samples=samples, progress=shown)
+        finally:
+            shown("")
+    if graph.complete:
+        return graph, ExitCode.HOLDS
+    say("stopped: what was found is kept")
+    return graph, ended.code
 
 
 def _say_state(assembly: Assembly, text: str, within: float | None, as_json: bool) -> None:

@@ -91,7 +91,8 @@ def _write_preview(html: Path, verified: list[tuple[Layout, Verdict]]) -> ExitCo
 
 def _write_report(report: Path, inputs: list[Path], verified: list[tuple[Layout, Verdict]]) -> ExitCode:
     """Sheets of the layouts that could be verified; the others have had their message."""
-    from fixture_design.viewing import refuse_inputs, write_report  # noqa: PLC0415 - reads geometry again
+    from fixture_design.io.outputs import refuse_inputs  # noqa: PLC0415 - as below
+    from fixture_design.viewing import write_report  # noqa: PLC0415 - reads geometry again
 
     try:
         refuse_inputs(report, inputs)

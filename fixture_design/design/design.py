@@ -61,14 +61,15 @@ def _searched(asked: Asked) -> DesignResult:
     best: DesignResult | None = None
     free: Vector | None = None
     certain = False
+    flat_first = not task.candidates.round_too
     for plan in plans(task, ways):
-        for some in by_certainty(candidates):
+        for some in by_certainty(candidates, round_too=not flat_first):
             for slides, keep_all in _turns(task, plan):
                 if slides and best is not None and best.free is not None:
                     break  # a motion that no candidate stops is free however the part comes out
                 found = attempt(asked, some, plan, keep_all=keep_all, slides=slides)
                 if left_out := len(candidates) - len(some):
-                    found = replace(found, notes=(*found.notes, left_out_in_words(left_out)))
+                    found = replace(found, notes=(*found.notes, left_out_in_words(left_out, flat_first=flat_first)))
                     found = not_yet_no(found, left_out)
                 found = replace(found, notes=(*found.notes, *left_out_notes))
                 best = found if best is None else better_of(best, found)

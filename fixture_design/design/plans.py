@@ -63,18 +63,20 @@ def unused_friction(task: Task) -> tuple[str, ...]:
     )
 
 
-def by_certainty(candidates: Candidates) -> Iterator[Candidates]:
+def by_certainty(candidates: Candidates, *, round_too: bool = False) -> Iterator[Candidates]:
     """Plane facets, as a file's digits leave them; where that only just fails, those that need no digits; then round
     surfaces too, the less well known they are the later, as far as that adds any.
 
     A group that cannot notice all that the next one can is left out: the end faces of a shaft are exact, and alone they
     are no place for its locators.
+
+    Args:
+        round_too: whether round surfaces that are known well count from the first.
     """
     errors = candidates.errors
     groups: list[Candidates] = []
-    for some in (
-        candidates.plane & (errors <= PLANE_KNOWN_TO), errors == 0, *(errors <= known for known in NORMALS_KNOWN_TO)
-    ):  # fmt: skip
+    flat_first = () if round_too else (candidates.plane & (errors <= PLANE_KNOWN_TO), errors == 0)
+    for some in (*flat_first, *(errors <= known for known in NORMALS_KNOWN_TO)):
         group = candidates.chosen(some)
         if len(group) and all(len(group) != len(other) for other in groups):
             groups.append(group)

@@ -108,9 +108,10 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     return DesignResult(Answer.UNDECIDED, None, steps=steps, bound=bound, reason=reason)
 
 
-def left_out_in_words(count: int) -> str:
-    """A note on candidates that were not looked at."""
-    return f"{count} candidates on round or uncertain surfaces were left out: with them fewer elements might do"
+def left_out_in_words(count: int, *, flat_first: bool = False) -> str:
+    """A note on candidates that were not looked at, maybe since flat ones do."""
+    words = f"{count} candidates on round or uncertain surfaces were left out: with them fewer elements might do"
+    return f"{words} (`candidates: {{round: true}}` counts those that are known well)" if flat_first else words
 
 
 def not_yet_no(found: DesignResult, left_out: int) -> DesignResult:

@@ -46,6 +46,7 @@ class CandidateRules:
         tip: of new elements.  more_tips: that they may have instead.
         pins: a round and a diamond pin in two holes are tried first; None for none.
         stem: sizes of what carries a tip, where these are not the usual ones.
+        round_too: whether round surfaces count from the first, not only where flat ones do not do.
         tolerance: to which new locators are placed along the normal [m].
     """
 
@@ -59,6 +60,7 @@ class CandidateRules:
     more_tips: tuple[Tip, ...] = ()
     pins: PinRules | None = None
     stem: StemSizes = field(default_factory=StemSizes)
+    round_too: bool = False
     tolerance: float | None = None
 
     @property

@@ -7,11 +7,7 @@ contacts close: in simulation grasps of a torus fell that took 58 and 79 % of it
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-
 from fixture_design.grasp.result import Grasp
-from fixture_design.grasp.torques import Drives
 from fixture_design.tolerances import FRICTION_LEFT
 
 #: Steps of the bisection; each halves what is not known.
@@ -20,25 +16,18 @@ _STEPS = 6
 
 def is_tight(grasp: Grasp) -> bool:
     """Whether a squeeze takes more of the friction than `FRICTION_LEFT` leaves; not where there is no squeeze."""
-    squeezes = _squeezer(grasp)
-    return not squeezes(1 - FRICTION_LEFT) and squeezes(1.0)
+    return not _squeezes(grasp, 1 - FRICTION_LEFT) and _squeezes(grasp, 1.0)
 
 
 def friction_used(grasp: Grasp) -> float:
     """The least share of the friction with which the drives can squeeze, from above; 1 where they cannot [-]."""
-    squeezes, low, high = _squeezer(grasp), 0.0, 1.0
+    low, high = 0.0, 1.0
     for _ in range(_STEPS):
         middle = (low + high) / 2
-        low, high = (low, middle) if squeezes(middle) else (middle, high)
+        low, high = (low, middle) if _squeezes(grasp, middle) else (middle, high)
     return high
 
 
-def _squeezer(grasp: Grasp) -> Callable[[float], bool]:
-    """Tells whether the fingers squeeze with a share of their friction."""
-
-    def squeezes(share: float) -> bool:
-        contacts = [replace(one, friction=share * one.friction) for one in grasp.verdict.contacts]
-        drives = Drives.of(grasp.posture, contacts, grasp.links, grasp.center)
-        return drives.squeezes and drives.squeeze(1.0) is not None
-
-    return squeezes
+def _squeezes(grasp: Grasp, share: float) -> bool:
+    """Whether the fingers squeeze with a share of their friction."""
+    return grasp.drives(share).squeeze(1.0) is not None

@@ -193,7 +193,7 @@ def with_load(grasp: Grasp, load: Vector | None) -> Grasp:
     """
     if load is None:
         return grasp
-    held = drives_of(grasp).least_effort(load)
+    held = grasp.drives().least_effort(load)
     notes = () if held is not None else ("the drives do not hold the load that was asked for",)
     return replace(grasp, held=held, notes=(*grasp.notes, *notes))
 
@@ -205,12 +205,7 @@ def with_weakest(grasp: Grasp) -> Grasp:
         if grasp.tight
         else ()
     )
-    return replace(grasp, weakest=weakest(drives_of(grasp)), notes=(*grasp.notes, *used))
-
-
-def drives_of(grasp: Grasp) -> Drives:
-    """What the hand's drives do to the part."""
-    return Drives.of(grasp.posture, grasp.verdict.contacts, grasp.links, grasp.center)
+    return replace(grasp, weakest=weakest(grasp.drives()), notes=(*grasp.notes, *used))
 
 
 def better_first(grasps: Sequence[Grasp]) -> list[Grasp]:

@@ -12,7 +12,7 @@ from dataclasses import replace
 from fixture_design.arrays import Vector
 from fixture_design.errors import GeometryError, format_length
 from fixture_design.geometry import PartGeometry
-from fixture_design.grasp.judging import Draft, Site, drives_of, judged, with_load, with_weakest
+from fixture_design.grasp.judging import Draft, Site, judged, with_load, with_weakest
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import quality
 from fixture_design.grasp.result import Grasp, GraspResult
@@ -105,7 +105,7 @@ def _doubts(grasp: Grasp, found: Touching, load: Vector | None) -> list[str]:
         return list(found.notes)
     if grasp.closed is Answer.UNDECIDED:
         return [grasp.doubt or "its verdict is undecided"]
-    drives = drives_of(grasp)
+    drives = grasp.drives()
     if not drives.squeezes:
         return [f"the contacts close, but nothing squeezes: {drives.stopped.in_words(grasp.posture.model)}"]
     return ["the drives do not hold the load that was asked for"] if load is not None and grasp.held is None else []

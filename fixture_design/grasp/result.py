@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fixture_design.arrays import Point
 from fixture_design.grasp.posture import Posture
 from fixture_design.grasp.quality import Quality
-from fixture_design.grasp.torques import Held
+from fixture_design.grasp.torques import Drives, Held
 from fixture_design.grasp.weakest import Weakest
 from fixture_design.layout import Answer, Layout, Verdict
 
@@ -59,6 +59,13 @@ class Grasp:
             if one.answer is not Answer.YES
         ]
         return next((found.reason for found in asked if found.reason), None)
+
+    def drives(self, friction: float = 1.0) -> Drives:
+        """What the hand's drives do to the part, with a share ``friction`` of the contacts' friction [-]."""
+        contacts = self.verdict.contacts
+        if friction != 1:
+            contacts = [replace(one, friction=friction * one.friction) for one in contacts]
+        return Drives.of(self.posture, contacts, self.links, self.center)
 
     @property
     def others(self) -> tuple[str, ...]:

@@ -122,6 +122,7 @@ def _rules(rules: CandidatesRecord, task: TaskRecord) -> CandidateRules:
         more_tips=tips[1:],
         pins=None if rules.pins is None else _pins(rules.pins, metres),
         stem=_stem(rules.stem, metres),
+        round_too=rules.round,
         tolerance=None if rules.tolerance is None else metres(rules.tolerance),
     )
 

@@ -81,6 +81,7 @@ class CandidatesRecord(Record):
     ) = Field(None, description="in place of `tip`: several, of which each new element has one")
     stem: StemRecord | None = None
     pins: PinsRecord | None = None
+    round: bool = Field(False, description="whether round surfaces count from the first: fewer elements may do")
     tolerance: Deviation | None = Field(None, description="of new locators' positions along the normal [length]")
 
 

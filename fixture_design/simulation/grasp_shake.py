@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,6 @@ from fixture_design.geometry.distance import guarded, obj_text
 from fixture_design.grasp.hand_model import HandModel
 from fixture_design.grasp.model_text import model_text
 from fixture_design.grasp.result import Grasp
-from fixture_design.grasp.torques import Drives
 from fixture_design.layout import Pose
 
 #: Standard gravity [m/s^2].
@@ -87,7 +86,8 @@ def shaken(grasp: Grasp, geometry: PartGeometry, shake: Shake | None = None) -> 
     """
     shake = shake or Shake()
     model = grasp.posture.model
-    torques = next((t for share in _FRICTION if (t := _squeeze(grasp, shake, share)) is not None), None)
+    total = shake.squeeze * shake.mass * _GRAVITY
+    torques = next((t for share in _FRICTION if (t := grasp.drives(share).squeeze(total)) is not None), None)
     if torques is None:
         return "the drives have no squeeze that balances"
     world = guarded(lambda: _World.of(grasp, geometry, shake, torques), model.name)
@@ -96,13 +96,6 @@ def shaken(grasp: Grasp, geometry: PartGeometry, shake: Shake | None = None) -> 
         moved[number], turned[number] = guarded(lambda way=direction: world.pulled(way, shake), model.name)
     held = tuple(bool(m <= shake.slip and t <= shake.turn) for m, t in zip(moved, turned, strict=True))
     return Shaken(moved, turned, held)
-
-
-def _squeeze(grasp: Grasp, shake: Shake, share: float) -> Weights | None:
-    """Torques that squeeze with a share of the friction."""
-    contacts = [replace(contact, friction=share * contact.friction) for contact in grasp.verdict.contacts]
-    drives = Drives.of(grasp.posture, contacts, grasp.links, grasp.center)
-    return drives.squeeze(shake.squeeze * shake.mass * _GRAVITY)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from fixture_design.packages import loaded_later
 if TYPE_CHECKING:
     from fixture_design.viewing.graph_drawing import graph_picture, write_graph_picture
     from fixture_design.viewing.previews import Preview, preview
-    from fixture_design.viewing.report import refuse_inputs, write_report
+    from fixture_design.viewing.report import write_report
     from fixture_design.viewing.scene import Scene, scene_of
     from fixture_design.viewing.scene_page import preview_page
     from fixture_design.viewing.scene_picture import picture
@@ -30,7 +30,6 @@ _HOME = {
     "picture": "scene_picture",
     "preview": "previews",
     "preview_page": "scene_page",
-    "refuse_inputs": "report",
     "scene_of": "scene",
     "write_graph_picture": "graph_drawing",
     "write_report": "report",
@@ -45,7 +44,6 @@ __all__ = [
     "picture",
     "preview",
     "preview_page",
-    "refuse_inputs",
     "scene_of",
     "write_graph_picture",
     "write_report",

@@ -18,12 +18,12 @@ from fixture_design.geometry.input_files import input_files
 from fixture_design.grasp.result import Grasp, GraspResult
 from fixture_design.io import read_graph, read_layout
 from fixture_design.io.graph_file import is_graph
+from fixture_design.io.outputs import refuse_inputs
 from fixture_design.io.text_file import write_bytes, write_text
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.graph_drawing import graph_png
 from fixture_design.viewing.graph_page import graph_page
 from fixture_design.viewing.graph_scene import graph_scene
-from fixture_design.viewing.report import refuse_inputs
 from fixture_design.viewing.scene import Scene, scene_of
 from fixture_design.viewing.scene_page import scene_page
 from fixture_design.viewing.scene_picture import scene_picture
@@ -103,7 +103,7 @@ def preview(
     if isinstance(thing, ContactStateGraph):
         if show is not None:
             raise UnknownNameError("answer of a graph of contact states, which has none", show, set())
-        return Preview(thing, planar=thing.assembly.space == "planar")
+        return Preview(thing, thing.assembly.files, thing.assembly.space == "planar")
     if isinstance(thing, DesignResult):
         if thing.layout is None:
             raise InputError(f"the design has no layout to show: {thing.reason or 'none was found'}")

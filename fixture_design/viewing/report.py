@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fixture_design.arrays import Ends
-from fixture_design.errors import FileFormatError
+from fixture_design.io.outputs import refuse_inputs
 from fixture_design.io.text_file import write_text
 from fixture_design.layout import Layout, Verdict
 from fixture_design.viewing.element_table import elements
@@ -54,16 +54,6 @@ def write_report(pairs: Sequence[tuple[Layout, Verdict]], path: Path, now: datet
     title = pairs[0][1].name if len(pairs) == 1 else f"{len(pairs)} layouts"
     head = tag("head", Markup('<meta charset="utf-8">'), tag("title", f"{title}: fixture verdict"), _style())
     write_text(path, "<!DOCTYPE html>\n" + tag("html", head, tag("body", *sheets), lang="en") + "\n")
-
-
-def refuse_inputs(path: Path, inputs: Sequence[Path]) -> None:
-    """Nothing that the user made may be lost.
-
-    Raises:
-        FileFormatError: ``path`` is one of the inputs.
-    """
-    if path.exists() and any(path.samefile(file) for file in inputs if file.exists()):
-        raise FileFormatError("this file is an input and would be lost", source=path, expected="another name")
 
 
 def _style() -> Markup:

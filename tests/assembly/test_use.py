@@ -1,6 +1,7 @@
 """What is done with a graph: files, a path, the sets of a state, pictures, the command."""
 
 import json
+import signal
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -166,15 +167,38 @@ def test_pictures_are_files(graph: ContactStateGraph, tmp_path: Path) -> None:
         write_graph_picture(graph, tmp_path / "nowhere" / "graph.png")
 
 
-def test_interrupted_searches_keep_what_they_found(monkeypatch: pytest.MonkeyPatch, command: Callable) -> None:  # noqa: F811
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_interrupted_searches_keep_what_they_found(
+    monkeypatch: pytest.MonkeyPatch,
+    command: Callable,  # noqa: F811
+    tmp_path: Path,
+    number: int,
+    code: int,
+) -> None:
     def interrupt(*_: object) -> None:
-        raise KeyboardInterrupt
+        signal.raise_signal(number)
 
     monkeypatch.setattr("fixture_design.assembly.generate.complete", interrupt)
-    ran = command("states", FIGURE_14)
-    assert ran.code == 130
+    ran = command("states", FIGURE_14, "-o", tmp_path / "part.json")
+    assert ran.code == code
+    assert ran.err.count("what was found is kept") == 1
     assert "interrupted: the graph is not complete" in ran.out
     assert "apex 3 - facet 5" in ran.out
+    monkeypatch.undo()
+    assert command("states", tmp_path / "part.json").code == 0
+
+
+def test_inputs_are_not_written_over(command: Callable, tmp_path: Path) -> None:  # noqa: F811
+    assembly, graph = tmp_path / "a.yaml", tmp_path / "g.json"
+    assembly.write_bytes(FIGURE_14.read_bytes())
+    before = assembly.read_bytes()
+    for arguments in (["-o", assembly], ["--graphml", assembly], ["-o", graph, "--png", graph], ["-o", tmp_path]):
+        assert command("states", assembly, *arguments).code == 2
+    assert command("states", assembly, "-o", graph).code == 0
+    for arguments in (["-o", graph], ["--c", graph], ["-o", tmp_path / "no" / "c.json"]):
+        assert command("classifier", graph, *arguments).code == 2
+    assert assembly.read_bytes() == before
+    assert read_graph(graph).complete
 
 
 def test_the_command(command: Callable, tmp_path: Path) -> None:  # noqa: F811 - the fixture

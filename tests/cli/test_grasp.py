@@ -179,7 +179,7 @@ def test_a_part_too_large_exits_with_3():
         (["--joint", "right_joint=0.045", "--joint", "left_joint=0.03"], "'right_joint' follows 'left_joint'"),
         (["--joint", "left_joint=0.02", "--joint", "left_joint=0.03"], "--joint is given twice"),
         (["-o", "no/such/folder/g.yaml"], "folder"),
-        (["-o", "g.html", "--html", "./g.html"], "the same file"),
+        (["-o", "g.html", "--html", "./g.html"], "two outputs would go to one file"),
         (["--html", "page.pdf"], "pages are HTML"),
         (["--table", "nan"], "--table cannot be used"),
     ],

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from fixture_design.errors import FileFormatError
 from fixture_design.io import layout_text, write_layout, write_new_layout
+from fixture_design.io.outputs import check_outputs
 from fixture_design.layout import Layout
-from fixture_design.viewing.report import refuse_inputs
 
 #: Endings of layout files, which are left out of the names that are made of them.
 _ENDINGS = (".layout", ".edited", ".recovered")
@@ -93,11 +93,9 @@ def target_of(source: Path | None, out: Path | None, inputs: tuple[Path, ...]) -
         is_layout = source is not None and source.suffix.lower() in (".yaml", ".yml", ".json")
         stem, ending = "layout" if source is None else stem_of(source), "edited" if is_layout else "layout"
         return next(free_names(folder, stem, ending))
-    refuse_inputs(out, inputs)
+    check_outputs([out], inputs)
     if out.suffix.lower() not in (".yaml", ".yml", ".json"):
         raise FileFormatError("layouts are YAML or JSON", source=out, expected="a name with .yaml or .json")
-    if not out.absolute().parent.is_dir():
-        raise FileFormatError("the folder to write to is not there", source=out, expected="an existing folder")
     return out
 
 
