@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from math import prod
 
 import numpy as np
 
 from fixture_design.analysis.hybrid_control import HybridControl, hybrid_control
-from fixture_design.arrays import ArrayLike, Vector
+from fixture_design.arrays import ArrayLike, Points, Vector
 from fixture_design.assembly.assembly import Assembly
 from fixture_design.assembly.contact_geometry import ContactGeometry, require_no_overlap
 from fixture_design.assembly.geometry_of import geometry_of
@@ -93,20 +94,26 @@ def control_of(geometry: ContactGeometry, configuration: ArrayLike) -> HybridCon
 
     Raises: as `state_control`.
     """
-    contacts = contacts_of(geometry, configuration)
+    choices = choices_of(contacts_of(geometry, configuration), 2 if geometry.dimension == 3 else 3)
+    faces = (face_vectors(*choice) if len(choice[0]) else np.zeros((0, geometry.dimension)) for choice in choices)
+    cones = [PolyhedralConvexCone.from_faces(rows, dimension=geometry.dimension) for rows in faces]
+    return hybrid_control(ConeUnion.of(cones))
+
+
+def choices_of(contacts: Sequence[Contact], plane: int) -> list[tuple[Points, Points]]:
+    """Points and normals, shape (n, plane), of every choice of one alternative in each clause: a cone of A each.
+
+    Raises:
+        UnsupportedError: they are more than `MOST_CHOICES`.
+    """
     clauses = [(contact.point, clause) for contact in contacts for clause in contact.clauses]
     choices = prod(len(clause) for _, clause in clauses)
     if choices > MOST_CHOICES:
-        raise UnsupportedError(
-            f"{choices} cones make the displacements that are admissible here", expected=f"at most {MOST_CHOICES}"
-        )
-    dimension = geometry.dimension
-    points = np.array([point for point, _ in clauses])
-    cones = []
-    for choice in product(*(clause for _, clause in clauses)):
-        rows = face_vectors(points, np.array(choice)) if clauses else np.zeros((0, dimension))
-        cones.append(PolyhedralConvexCone.from_faces(rows, dimension=dimension))
-    return hybrid_control(ConeUnion.of(cones))
+        names = ", ".join(contact.name for contact in contacts)
+        problem = f"{choices} cones make the displacements that are admissible with {names}"
+        raise UnsupportedError(problem, expected=f"at most {MOST_CHOICES}")
+    points = np.array([point for point, _ in clauses]).reshape(-1, plane)
+    return [(points, np.array(choice).reshape(-1, plane)) for choice in product(*(clause for _, clause in clauses))]
 
 
 def _apices_together(geometry: PlanarGeometry, q: np.ndarray, near: float) -> tuple[list[Contact], list[np.ndarray]]:

@@ -61,6 +61,15 @@ class SurfacePoints:
     def __len__(self) -> int:
         return len(self.points)
 
+    def __add__(self, more: SurfacePoints) -> SurfacePoints:
+        return SurfacePoints(
+            np.vstack([self.points, more.points]),
+            np.vstack([self.normals, more.normals]),
+            np.concatenate([self.facets, more.facets]),
+            (*self.features, *more.features),
+            (*self.provenance, *more.provenance),
+        )
+
 
 def sample_surface(
     geometry: PartGeometry, X_WP: Pose, spacing: float, rules: SamplingRules | None = None, seed: int = 0

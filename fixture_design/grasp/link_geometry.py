@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fixture_design.arrays import Point, read_only
+from fixture_design.arrays import Point, Points, Rows, Weights, read_only
 from fixture_design.errors import GeometryError
 from fixture_design.geometry import PartGeometry
 from fixture_design.geometry.piece import Piece
@@ -63,6 +63,20 @@ class LinkGeometry:
         """A ball that holds the link."""
         center = self.geometry.box_center
         return Ball(center, float(np.linalg.norm(self.geometry.vertices - center, axis=1).max()))
+
+    def above_hull(self, points: Points) -> Weights:
+        """How far points are in front of the foremost face of its convex hull, shape (n,) [m].
+
+        Outside that is at most how far they are off.
+        """
+        return (points @ self._hull[:, :3].T + self._hull[:, 3]).max(axis=1)
+
+    @cached_property
+    def _hull(self) -> Rows:
+        """Its faces [outward unit normal, offset]."""
+        from scipy.spatial import ConvexHull
+
+        return ConvexHull(self.geometry.vertices).equations
 
 
 def link_geometry(

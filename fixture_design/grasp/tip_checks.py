@@ -127,7 +127,7 @@ class _Skin:
 
     def off(self, points: Float[np.ndarray, "n 3"]) -> Weights:
         """How far points are from the surface, or from the hull of one of the links where they are on that [m]."""
-        hulls = np.min([np.abs(_above_hull(link, X_ML.points(points))) for link, X_ML in self.parts], axis=0)
+        hulls = np.min([np.abs(link.above_hull(X_ML.points(points))) for link, X_ML in self.parts], axis=0)
         off = np.abs(self.distances(points))
         return np.where(hulls <= TIP_OFF_LINK, np.minimum(off, hulls), off)
 
@@ -136,7 +136,7 @@ class _Skin:
         both = np.array([point, point + FINGER_GAP * facing])
         before, after = self.distances(both)
         if abs(before) > TIP_OFF_LINK:
-            before, after = np.min([_above_hull(link, X_ML.points(both)) for link, X_ML in self.parts], axis=0)
+            before, after = np.min([link.above_hull(X_ML.points(both)) for link, X_ML in self.parts], axis=0)
         return float(after - before) / FINGER_GAP
 
     def distances(self, points: Float[np.ndarray, "n 3"]) -> Weights:
@@ -148,11 +148,3 @@ def _distances(link: LinkGeometry, points: Float[np.ndarray, "n 3"]) -> Weights:
     """Signed distances from a link, balls as they are and all else by its triangles [m]."""
     balls = [np.linalg.norm(points - ball.center, axis=1) - ball.radius for ball in link.balls]
     return np.min([*balls, *([] if link.only_balls else [link.solid.distances(points)])], axis=0)
-
-
-def _above_hull(link: LinkGeometry, points: Float[np.ndarray, "n 3"]) -> Weights:
-    """How far points are in front of the foremost face of a link's hull; outside at most how far they are off [m]."""
-    from scipy.spatial import ConvexHull
-
-    faces = ConvexHull(link.geometry.vertices).equations
-    return (points @ faces[:, :3].T + faces[:, 3]).max(axis=1)

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
-from math import prod
 
 import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Point, Rows
 from fixture_design.assembly.contact_geometry import ContactGeometry
-from fixture_design.assembly.control import MOST_CHOICES, contacts_of
+from fixture_design.assembly.control import choices_of, contacts_of
 from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.cones import PolyhedralConvexCone, convert, intersect
-from fixture_design.contacts import Contact, cross, face_vectors, friction_edges
-from fixture_design.errors import UnsupportedError
+from fixture_design.contacts import cross, face_vectors, friction_edges
 from fixture_design.recognition.signals import Signals
 
 
@@ -90,7 +87,7 @@ def sample_cones(
     rows = _wrenches(arms, normals) @ turns
     vectors = (rows if weights is None else np.concatenate([rows, weights[:, None]], axis=1)) * signals.wrench_scale
     if not apart and not isinstance(geometry, RoundGeometry):
-        branches = [_branches(contacts_of(geometry, row), signals.plane) for row in q]
+        branches = [choices_of(contacts_of(geometry, row), signals.plane) for row in q]
         spans = [_common([_force_spans(*branch, physics) for branch in some], signals.wrench_size) for some in branches]
         faces = [[face_vectors(*branch) for branch in some] for some in branches]
     else:
@@ -141,18 +138,6 @@ def _turnings(R: np.ndarray) -> np.ndarray:
     if plane == 3:
         turns[:, 3:, 3:] = R
     return turns
-
-
-def _branches(contacts: tuple[Contact, ...], plane: int) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Points and normals of every choice of alternatives."""
-    clauses = [(contact.point, clause) for contact in contacts for clause in contact.clauses]
-    choices = prod(len(clause) for _, clause in clauses)
-    if choices > MOST_CHOICES:
-        names = ", ".join(contact.name for contact in contacts)
-        problem = f"{choices} cones make the forces of one sample of the state with {names}"
-        raise UnsupportedError(problem, expected=f"at most {MOST_CHOICES}")
-    points = np.array([point for point, _ in clauses]).reshape(-1, plane)
-    return [(points, np.array(choice).reshape(-1, plane)) for choice in product(*(clause for _, clause in clauses))]
 
 
 def _force_spans(points: np.ndarray, normals: np.ndarray, physics: Physics) -> Rows:

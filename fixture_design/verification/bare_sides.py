@@ -37,14 +37,3 @@ def bare_facets(geometry: PartGeometry, spots: SurfacePoints, spacing: float) ->
         if flat and (facing @ units[facet] >= np.cos(_ALIKE)).sum() < _FEW:
             found.add(facet)
     return tuple(facet + 1 for facet in sorted(found))
-
-
-def joined(spots: SurfacePoints, more: SurfacePoints) -> SurfacePoints:
-    """Candidates and more of them."""
-    return type(spots)(
-        np.vstack([spots.points, more.points]),
-        np.vstack([spots.normals, more.normals]),
-        np.concatenate([spots.facets, more.facets]),
-        (*spots.features, *more.features),
-        (*spots.provenance, *more.provenance),
-    )

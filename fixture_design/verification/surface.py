@@ -159,7 +159,7 @@ class PartSurface:
     ) -> SurfacePoints:
         """Candidates with more on sides that a margin has left bare, nearer to their edges; in space."""
         from fixture_design.geometry import Polygon  # noqa: PLC0415 - as above
-        from fixture_design.verification.bare_sides import bare_facets, joined  # noqa: PLC0415 - as above
+        from fixture_design.verification.bare_sides import bare_facets  # noqa: PLC0415 - as above
 
         if isinstance(self.geometry, Polygon) or rules.grid is not None:
             return found
@@ -172,7 +172,7 @@ class PartSurface:
                 more = self._spots(rules, part * self.scale().length, seed, bare)
             except GeometryError:  # none there, or keep-outs
                 continue
-            found = joined(found, more)
+            found += more
         return found
 
     def _spots(
