@@ -19,7 +19,7 @@ from fixture_design.design.pinned import pinned_best_first
 from fixture_design.design.plans import LEAVING, LOCATING, Plan
 from fixture_design.design.preloads import duties_of, found_preload, preloaded
 from fixture_design.design.problem import Problem
-from fixture_design.design.result import Bound, DesignResult
+from fixture_design.design.result import Bound, DesignResult, closure_margin
 from fixture_design.design.search import search
 from fixture_design.design.shortfall import bound_of, failing, refused, without_layout
 from fixture_design.design.start import Start, begun
@@ -245,9 +245,6 @@ def _drawn_up(
         raise _UselessError(useless) from cause
     answer = Answer.YES if verdict.satisfied is None else verdict.satisfied
     spare = tuple(Step("removed", start.name(i), "spare") for i in problem.spare if i not in found.clamps)
-    closure = verdict.groups["all"].findings.get(
-        "force_closure" if problem.closes == "with friction" else "form_closure"
-    )
     reason = plan.reason if answer is Answer.YES else f"the layout that was found does not verify: {failing(verdict)}"
     exact = found.accuracy if np.isfinite(found.accuracy) else None
     shown = replace(problem, locators=start.locators)  # new pins have their reasons too
@@ -255,7 +252,7 @@ def _drawn_up(
         # a layout that fails does not prove that none holds
         Answer.UNDECIDED if answer is Answer.NO else answer, layout, verdict,
         (*start.steps, *spare, *additions(shown, found.locators, found.clamps, names)), bound,
-        found.out, exact, outcome.best_accuracy, closure.margin if closure and problem.closes else None,
+        found.out, exact, outcome.best_accuracy, closure_margin(verdict),
         preload=found_preload(problem, layout), best_preload=outcome.best_preload,
         best_preload_here=outcome.best_preload_here,
         reason=reason, notes=tuple(_notes(asked.task, problem, found)),

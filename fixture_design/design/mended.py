@@ -12,7 +12,7 @@ from fixture_design.design.changing import Fewest, best_places, more_exact
 from fixture_design.design.found import Found
 from fixture_design.design.problem import Problem
 from fixture_design.design.raising import fewest_raised
-from fixture_design.design.result import ChangeBound, DesignResult
+from fixture_design.design.result import ChangeBound, DesignResult, closure_margin
 from fixture_design.design.shortfall import failing
 from fixture_design.design.staged import named
 from fixture_design.design.ways import Ways
@@ -77,6 +77,5 @@ def _drawn_up(
     if satisfied is not Answer.YES:  # no number of changes is known to do
         reason = f"what was found does not verify: {failing(verdict)}"
         return DesignResult(Answer.UNDECIDED, after, verdict, tuple(steps), reason=reason)
-    return DesignResult(
-        satisfied, after, verdict, tuple(steps), changes=ChangeBound(len(steps), fewest.bound, fewest.complete)
-    )
+    changes = ChangeBound(len(steps), fewest.bound, fewest.complete)
+    return DesignResult(satisfied, after, verdict, tuple(steps), margin=closure_margin(verdict), changes=changes)

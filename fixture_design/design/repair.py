@@ -21,7 +21,7 @@ from fixture_design.design.mended import NamedLeavesError, first_that_holds
 from fixture_design.design.plans import LEAVING, LOCATING, Plan, by_certainty
 from fixture_design.design.preloads import duties_of
 from fixture_design.design.problem import Problem
-from fixture_design.design.result import ChangeBound, DesignResult
+from fixture_design.design.result import ChangeBound, DesignResult, closure_margin
 from fixture_design.design.shortfall import left_out_in_words, not_yet_no
 from fixture_design.design.staged import as_seen, aside, unlike_asked, words
 from fixture_design.design.start import elements_of
@@ -59,7 +59,9 @@ def repair(
     asked = _asked_for(layout, ways)
     before = ways.verify(asked) if (asked.elements or asked.bodies or asked.contacts) else None
     if before is not None and before.satisfied is Answer.YES:
-        return DesignResult(Answer.YES, asked, before, changes=ChangeBound(0, 0, complete=True))
+        return DesignResult(
+            Answer.YES, asked, before, margin=closure_margin(before), changes=ChangeBound(0, 0, complete=True)
+        )
     mending = _Mending(asked, before, ways, seed, rules or CandidateRules(), progress, cancelled)
     others = aside(asked)
     result = mending.result(others)

@@ -99,3 +99,10 @@ class DesignResult:
     free: Vector | None = None
     reason: str | None = None
     notes: tuple[str, ...] = ()
+
+
+def closure_margin(verdict: Verdict) -> float | None:
+    """The least of the closures that are required; None where none is, or no margin is known."""
+    closures = [r for r in verdict.requirements if r.require in ("form_closure", "force_closure")]
+    margins = [verdict.groups[r.group].findings[r.require].margin for r in closures]
+    return min((margin for margin in margins if margin is not None), default=None)

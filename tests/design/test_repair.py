@@ -150,6 +150,9 @@ def test_a_clamp_too_few_is_one_change() -> None:
     result = repair(layout(spots, without, OPEN), Fake(spots))
     confirm(result, without)
     assert [step.action for step in result.steps] == ["added"]
+    assert result.verdict is not None
+    assert result.margin == result.verdict.groups["all"].findings["form_closure"].margin
+    assert result.margin
 
 
 def test_a_locator_on_the_wrong_side_is_moved() -> None:
