@@ -12,6 +12,7 @@ from fixture_design.arrays import Weights, read_only
 from fixture_design.contacts import Provenance
 from fixture_design.geometry.broad import Boxes, BoxTree, boxes_of
 from fixture_design.geometry.distance import DistanceField
+from fixture_design.geometry.facet_data import Region, fit_tolerance, may_be_round, part_size
 from fixture_design.geometry.facets import Facet, Facets, facet_notes, facets_of
 from fixture_design.geometry.flats import judged_again
 from fixture_design.geometry.piece import Piece, SmoothPatch
@@ -26,7 +27,7 @@ from fixture_design.geometry.shapes import (
     Vector3,
     Vertices,
 )
-from fixture_design.geometry.smooth_regions import Region, fit_tolerance, may_be_round, part_size, smooth_surfaces
+from fixture_design.geometry.smooth_regions import smooth_surfaces
 from fixture_design.geometry.smooth_surface import RoundShape, SmoothSurface
 from fixture_design.geometry.turned import TurnedPiece, coarse_errors, turned_pieces
 from fixture_design.geometry.winding import shells, winding_numbers
