@@ -11,7 +11,7 @@ Where sliding is allowed, n . t <= 0, the sets of normals are largest on the ray
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -64,28 +64,66 @@ def cells(
             their normals is in its way (n . out <= 0).
         sliding: whether the part may slide along a normal's facet, n . t = 0.
     """
-    most = COPLANAR_ANGLE if sliding else -COPLANAR_ANGLE
-    if sliding and out is not None:
-        found, complete = [out / np.linalg.norm(out)], True
-    elif sliding and (normals.shape[1] == 2 or len(normals) <= MOST_NORMALS):
-        found, complete = _rays(normals), True
-    elif out is not None:
-        found, complete = _near(out / np.linalg.norm(out), normals), True
-    elif normals.shape[1] == 2:
-        found, complete = _in_the_plane(normals), True
-    elif len(normals) <= MOST_NORMALS:
-        found, complete = _in_space(normals), True
+    allowed = np.ones(len(normals), dtype=bool) if out is None else normals @ out <= COPLANAR_ANGLE
+    complete = normals.shape[1] == 2 or len(normals) <= MOST_NORMALS or out is not None
+    if sliding:
+        directions = [out / np.linalg.norm(out)] if out is not None else _rays(normals)
+        found = list(_slides(normals, allowed, directions if complete else _tried(normals, seed)))
     else:
-        found, complete = _tried(normals, seed), False
-    best: dict[bytes, Cell] = {}
-    for direction in found:
-        leaves = normals @ direction <= most
-        if out is not None:
-            leaves &= normals @ out <= COPLANAR_ANGLE
-        key = leaves.tobytes()
-        if leaves.any() and (key not in best or _depth(normals, direction) > _depth(normals, best[key].direction)):
-            best[key] = Cell(direction, leaves)
-    return sorted(_largest(list(best.values())), key=lambda cell: -int(cell.leaves.sum())), complete
+        patterns = {leaves.tobytes(): leaves for leaves in (allowed & p for p in _patterns(normals, out, seed))}
+        found = [cell for leaves in patterns.values() if (cell := _cell(normals, leaves, allowed)) is not None]
+    return sorted(_largest(found), key=lambda cell: -int(cell.leaves.sum())), complete
+
+
+def _patterns(normals: Points, out: Point | None, seed: int) -> Iterator[Mask]:
+    """Which normals are left, n . t < 0, in every cell there is, or that touches a direction; or at some directions."""
+    if out is not None:
+        yield from _near(out / np.linalg.norm(out), normals)
+    elif normals.shape[1] == 2:
+        yield from (normals @ direction < 0 for direction in _between(normals))
+    elif len(normals) <= MOST_NORMALS:
+        yield from _in_space(normals)
+    else:
+        yield from (normals @ direction < 0 for direction in _tried(normals, seed))
+
+
+def _slides(normals: Points, allowed: Mask, directions: Iterable[Point]) -> Iterator[Cell]:
+    """What the part leaves or slides along in some directions."""
+    for direction in directions:
+        yield Cell(direction, allowed & (normals @ direction <= COPLANAR_ANGLE))
+
+
+def _cell(normals: Points, leaves: Mask, allowed: Mask) -> Cell | None:
+    """The direction that leaves some normals most steeply, and all that it leaves; None if there is hardly any.
+
+    max over |t| = 1 of min over i of -n_i . t  is  1 / |x| for the shortest x with n_i . x <= -1, and x / |x| is the
+    direction: least distance programming (Lawson and Hanson, Solving least squares problems, 1974, chapter 23).
+    """
+    if not leaves.any():
+        return None
+    from scipy.optimize import nnls  # noqa: PLC0415 - slow to import
+
+    some = -normals[leaves]
+    target = np.append(np.zeros(some.shape[1]), 1.0)
+    system = np.vstack([some.T, np.ones(len(some))])
+    residual = system @ nnls(system, target)[0] - target
+    if np.linalg.norm(residual) <= COPLANAR_ANGLE / 2:  # then |x| is 2 / COPLANAR_ANGLE or more
+        return None
+    direction = -residual[:-1] / residual[-1]
+    direction /= np.linalg.norm(direction)
+    left = allowed & (normals @ direction <= -COPLANAR_ANGLE)
+    return Cell(direction, left) if left[leaves].all() else None
+
+
+def _largest(found: list[Cell]) -> list[Cell]:
+    """Those that no other one has all normals of, and more; of equal ones the first."""
+    different_ones = list({cell.leaves.tobytes(): cell for cell in reversed(found) if cell.leaves.any()}.values())[::-1]
+    if not different_ones:
+        return []
+    leaves = np.array([cell.leaves for cell in different_ones]).astype(np.float64)
+    missed = leaves @ (1.0 - leaves).T  # for each pair how many normals of the first the second does not leave
+    within = (missed == 0).sum(axis=1) > 1
+    return [cell for cell, inside in zip(different_ones, within, strict=True) if not inside]
 
 
 def _rays(normals: Points) -> Iterator[Point]:
@@ -105,23 +143,8 @@ def _rays(normals: Points) -> Iterator[Point]:
             yield from (ray / length, -ray / length)
 
 
-def _depth(normals: Points, direction: Point) -> float:
-    """How far a direction is from the borders of its cell."""
-    return float(np.abs(normals @ direction).min())
-
-
-def _largest(found: list[Cell]) -> list[Cell]:
-    """Those that no other one has all normals of, and more; all of them leave different normals."""
-    if not found:
-        return []
-    leaves = np.array([cell.leaves for cell in found]).astype(np.float64)
-    missed = leaves @ (1.0 - leaves).T  # for each pair how many normals of the first the second does not leave
-    within = (missed == 0).sum(axis=1) > 1
-    return [cell for cell, inside in zip(found, within, strict=True) if not inside]
-
-
-def _in_the_plane(normals: Points) -> Iterator[Point]:
-    """One direction between any two neighbouring borders."""
+def _between(normals: Points) -> Iterator[Point]:
+    """One direction of the plane between any two neighbouring borders."""
     borders = np.arctan2(normals[:, 1], normals[:, 0]) + np.pi / 2
     borders = np.unique(np.round(np.mod(np.concatenate([borders, borders + np.pi]), 2 * np.pi), 9))
     following = np.append(borders[1:], borders[0] + 2 * np.pi)
@@ -129,8 +152,9 @@ def _in_the_plane(normals: Points) -> Iterator[Point]:
         yield np.array([np.cos(angle), np.sin(angle)])
 
 
-def _in_space(normals: Points) -> Iterator[Point]:
-    yield from -normals
+def _in_space(normals: Points) -> Iterator[Mask]:
+    for normal in normals:
+        yield normals @ normal > 0
     for first, second in combinations(range(len(normals)), 2):
         ray = cross_products(normals[first], normals[second])
         length = np.linalg.norm(ray)
@@ -139,18 +163,18 @@ def _in_space(normals: Points) -> Iterator[Point]:
             yield from _near(-ray / length, normals)
 
 
-def _near(ray: Point, normals: Points) -> Iterator[Point]:
-    """Directions in all cells that touch a ray."""
+def _near(ray: Point, normals: Points) -> Iterator[Mask]:
+    """Which normals are left in the cells that touch a ray: by signs, however near to it the next border is."""
     products = normals @ ray
-    across = normals[np.abs(products) <= COPLANAR_ANGLE]
-    if not len(across):
-        yield ray
+    leaves = products < 0
+    across = np.abs(products) <= COPLANAR_ANGLE
+    if not across.any():
+        yield leaves
         return
-    others = np.abs(products[np.abs(products) > COPLANAR_ANGLE])
-    step = float(others.min(initial=1.0)) / 2
-    for aside in _aside(ray, across):
-        moved = ray + step * aside
-        yield moved / np.linalg.norm(moved)
+    for aside in _aside(ray, normals[across]):
+        near = leaves.copy()
+        near[across] = normals[across] @ aside < 0
+        yield near
 
 
 def _aside(ray: Point, across: Points) -> Iterator[Point]:
@@ -161,7 +185,7 @@ def _aside(ray: Point, across: Points) -> Iterator[Point]:
     first = across[0]
     second = cross_products(ray, first)
     flat = np.column_stack([across @ first, across @ second])
-    for x, y in _in_the_plane(flat):
+    for x, y in _between(flat):
         yield x * first + y * second
 
 
