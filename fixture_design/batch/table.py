@@ -24,7 +24,8 @@ def check_table(path: Path) -> None:
     """Before anything long begins: whether such a table can be written.
 
     Raises:
-        InputError: another ending than .csv and .parquet, or nothing is installed that writes Parquet.
+        InputError: another ending than .csv and .parquet, or nothing is installed that writes Parquet; a file that is
+            no such table would be lost, maybe one of loads.
     """
     if path.suffix.lower() not in (".csv", ".parquet"):
         raise InputError(
@@ -32,6 +33,12 @@ def check_table(path: Path) -> None:
         )
     if path.suffix.lower() == ".parquet" and not any(map(find_spec, _PARQUET)):
         raise InputError("Parquet needs polars or pandas", source=path, expected="pip install polars, or a .csv")
+    if path.suffix.lower() == ".csv" and path.is_file() and path.stat().st_size:
+        begins = ",".join(_FIRST).encode()
+        with path.open("rb") as opened:
+            if opened.read(len(begins)) != begins:
+                raise FileFormatError("this file is no table of a batch and would be lost", source=path,
+                                      expected="another name")  # fmt: skip
 
 
 def write_table(output: Path, path: Path) -> None:

@@ -79,8 +79,14 @@ def _task(path: Path, scale: float) -> Task | Layout:
 
 
 def _inputs(task: Task | Layout) -> tuple[Path | None, ...]:
-    start = task.start.source if isinstance(task, Task) and task.start is not None else None
-    return task.source, None if task.part is None else task.part.file, start
+    """All files that a task or a layout is made of, so far as they are there."""
+    from fixture_design.geometry.input_files import with_meshes  # noqa: PLC0415 - Drake and trimesh
+
+    start = task.start if isinstance(task, Task) else task
+    models = [None if task.part is None else task.part.file, *(body.file for body in (start.bodies if start else ()))]
+    meshes = [file for model in models if model is not None and model.is_file() for file in with_meshes(model)]
+    loads = [load.path for one in (task, start) if one is not None for load in one.loads]
+    return (task.source, None if start is None else start.source, *meshes, *loads)
 
 
 def _write(result: DesignResult, task: Task | Layout, out: Path | None, urdf: Path | None, csv: Path | None) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 from fixture_design.arrays import Point, Vector
 from fixture_design.cli.messages import printable
 from fixture_design.design import Bound, ChangeBound, DesignResult, Step
-from fixture_design.layout import Answer
+from fixture_design.layout import Answer, element_name
+from fixture_design.tolerances import COPLANAR_ANGLE
 from fixture_design.viewing.motion_words import motion_in_words
 
 _OUTCOME = {
@@ -34,8 +35,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
     if result.bound is not None:
         yield _bound_in_words(result.bound)
     if result.out is not None:
-        yield f"the part comes out along [{', '.join(f'{x:.3g}' for x in result.out + 0.0)}]"
-    if result.accuracy is not None and result.best_accuracy is not None:
+        yield _out_in_words(result, result.out)
+    if result.accuracy is not None:
         yield _accuracy_in_words(result, result.accuracy, result.best_accuracy)
     if result.margin is not None:
         yield f"margin of closure {result.margin:.3g}"
@@ -46,6 +47,15 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
         yield printable(f"note: {note}")
     outcome = _OUTCOME[result.satisfied]
     yield printable(f"{outcome}: {result.reason}" if result.reason else outcome)
+
+
+def _out_in_words(result: DesignResult, out: Point) -> str:
+    """The way out, and what the part slides along on it."""
+    words = f"the part comes out along [{', '.join(f'{x:.3g}' for x in np.round(out, 6) + 0.0)}]"
+    contacts = () if result.verdict is None else result.verdict.contacts
+    beside = [c for c in contacts if c.role == "locator" and any(abs(n @ out) <= COPLANAR_ANGLE for n in c.normals)]
+    names = dict.fromkeys(element_name(contact.name) for contact in beside)
+    return f"{words}, sliding along {', '.join(names)}" if names else words
 
 
 def _view(result: DesignResult) -> tuple[Point, float]:
@@ -79,10 +89,11 @@ def _changes_in_words(changes: ChangeBound) -> str:
     if changes.found == 0:
         return "nothing has to change"
     found = f"{changes.found} change{'' if changes.found == 1 else 's'}"
+    among = "" if changes.candidates is None else f" among {changes.candidates} candidates"
     if changes.proven:
-        return f"{found}; fewer do not do it (proven)"
+        return f"{found}; fewer do not do it{among} (proven)"
     where = "" if changes.complete else " in the directions that were tried"
-    return f"{found}; at least {changes.bound} are needed{where}"
+    return f"{found}; at least {changes.bound} are needed{among}{where}"
 
 
 def _bound_in_words(bound: Bound) -> str:
@@ -110,14 +121,17 @@ def _preload_in_words(result: DesignResult) -> str:
     return words
 
 
-def _accuracy_in_words(result: DesignResult, accuracy: float, best: float) -> str:
-    """How exact the locators are, and how far that may be from the best ones."""
+def _accuracy_in_words(result: DesignResult, accuracy: float, best: float | None) -> str:
+    """How exact the locators are, and where it is known how far that may be from the best ones."""
+    featured = result.layout is not None and bool(result.layout.key_features)
+    words = f"accuracy: 1 / volume of the locators' rows is {accuracy:.4g}"
+    if featured:
+        off = f"a key feature is off by {accuracy * _OFF:.3g} of its tolerance at most"
+        words = f"accuracy: with locators {_OFF * 1e3:g} mm off, {off}"
+    if best is None:
+        return words
     ratio = max(accuracy / best, 1.0)
     where = "" if result.bound is None or result.bound.complete else " in the directions that were tried"
     gap = f"({ratio - 1:.1%})" if ratio < 2 else f"({ratio:.3g} times)"
-    if result.layout is not None and result.layout.key_features:
-        taken, least = accuracy * _OFF, best * _OFF
-        words = f"accuracy: with locators {_OFF * 1e3:g} mm off, a key feature is off by {taken:.3g} of its tolerance"
-        return f"{words} at most, and with none of these candidates{where} by less than {least:.3g} {gap}"
-    words = f"accuracy: 1 / volume of the locators' rows is {accuracy:.4g}"
-    return f"{words}, and with none of these candidates{where} below {best:.4g} {gap}"
+    least = f"by less than {best * _OFF:.3g}" if featured else f"below {best:.4g}"
+    return f"{words}, and with none of these candidates{where} {least} {gap}"

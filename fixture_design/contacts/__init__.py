@@ -20,7 +20,7 @@ from fixture_design.contacts.friction import (
     tangents,
     tangents_towards,
 )
-from fixture_design.contacts.limit_surface import contact_edges, torsion_of_patch
+from fixture_design.contacts.limit_surface import contact_edges, limit_directions, torsion_of_patch
 from fixture_design.contacts.wrench import (
     cross,
     face_vectors,
@@ -48,6 +48,7 @@ __all__ = [
     "face_vectors",
     "first_tangents",
     "friction_edges",
+    "limit_directions",
     "matching",
     "motion_about_origin",
     "motion_scaled",

@@ -45,11 +45,14 @@ def contact_edges(
         forces = friction_edges(normal, friction, edges, side, first)
         return forces, np.zeros((len(forces), 1 if len(normal) == 2 else 3))
     unit = unit_normal(normal)
-    directions = _crossings(edges)
-    reach = friction if side == "inner" else friction / _inner_radius(edges)
+    directions = friction * limit_directions(edges, side)
     frame = np.array(tangents(unit) if first is None else (first, np.cross(unit, first)))
-    forces = unit + reach * directions[:, :2] @ frame
-    return forces, reach * torsion * directions[:, 2:] * unit
+    return unit + directions[:, :2] @ frame, torsion * directions[:, 2:] * unit
+
+
+def limit_directions(edges: int, side: Side) -> Points:
+    """Corners of a polytope in the limit surface's unit ball, or around it: two tangents and the spin, shape (k, 3)."""
+    return _crossings(edges) / (1.0 if side == "inner" else _inner_radius(edges))
 
 
 def _crossings(edges: int) -> Points:

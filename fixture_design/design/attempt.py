@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fixture_design.arrays import Mask
-from fixture_design.design.candidates import Candidates, stops
+from fixture_design.design.candidates import Candidates
 from fixture_design.design.drawing_up import layout_of, named
 from fixture_design.design.features import features_of
 from fixture_design.design.fitting import in_every_way, in_the_way, standing, way_out
@@ -194,8 +194,7 @@ def _unstoppable(asked: Asked, problem: Problem, candidates: Candidates, start: 
     assert problem.never_stopped is not None
     free = in_world(problem.never_stopped, candidates.scale)
     reason = f"no candidate stops a motion; {len(candidates)} were there"
-    tie = bool(stops(problem.bounding_rows, problem.never_stopped, problem.candidates.tolerances.zero).any())
-    if not candidates.errors.any() and not problem.vague and not tie:
+    if not candidates.errors.any() and not problem.vague and not problem.barely_stopped:
         return DesignResult(Answer.NO, None, steps=start.steps, free=free, reason=reason)
     certain = (
         free_for_certain(replace(asked.task, start=None), asked.ways, candidates)
@@ -204,7 +203,8 @@ def _unstoppable(asked: Asked, problem: Problem, candidates: Candidates, start: 
     )
     if certain is not None:
         return DesignResult(Answer.NO, None, steps=start.steps, free=certain, reason=reason)
-    but = "some stop it by no more than rounding does" if tie else "some of their normals are not known exactly"
+    barely, unknown = "some stop it by no more than rounding does", "some of their normals are not known exactly"
+    but = barely if problem.barely_stopped else unknown
     return DesignResult(Answer.UNDECIDED, None, steps=start.steps, free=free, reason=f"{reason}, and {but}")
 
 

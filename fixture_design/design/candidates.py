@@ -16,8 +16,18 @@ import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector, Weights
-from fixture_design.contacts import Contact, Provenance, Scale, face_vectors, tangents, unit_normal
-from fixture_design.layout import Element, PointTip, Tip
+from fixture_design.contacts import (
+    Contact,
+    Provenance,
+    Scale,
+    Side,
+    face_vectors,
+    limit_directions,
+    tangents,
+    torsion_of_patch,
+    unit_normal,
+)
+from fixture_design.layout import Element, PointTip, SoftTip, Tip
 from fixture_design.tolerances import DEFAULT, KNOWN_WELL, Tolerances
 
 #: For each candidate its points, normals or rows, as many for each: shape (n, k, ...); unused ones are zero.
@@ -58,6 +68,8 @@ class Candidates:
         features: what each of them touches.
         errors: how far the normals may be off [rad].
         friction: coefficient of each, used only where rows with friction are asked for.
+        torsion: of soft tips, likewise: the moment about the normal of a force of 1, for a coefficient of 1 [m].
+        vague: whether each may do more than its rows say: where alternatives, or normals, are open.
         elements: the element that a candidate is already; None for those that are none yet.
         scale: reference point and length of the rows.
         places: where an element is asked to stand, shape (n, p) [m].
@@ -70,6 +82,8 @@ class Candidates:
     features: tuple[str, ...]
     errors: Weights
     friction: Weights
+    torsion: Weights
+    vague: Mask
     elements: tuple[Element | None, ...]
     scale: Scale
     places: Points
@@ -86,8 +100,13 @@ class Candidates:
         makes = (make or Make(PointTip()),) * count
         places = np.array(spots.points)
         plane = np.array([origin.kind == "exact" for origin in spots.provenance], dtype=bool)
+        soft = make.tip if make is not None and isinstance(make.tip, SoftTip) and points.shape[2] == 3 else None
+        torsion = np.full(count, 0.0 if soft is None else torsion_of_patch(soft.radius))
         rubbing = np.full(count, friction)
-        return cls(points, normals, spots.features, errors, rubbing, nothing, scale, places, makes, plane)
+        certain = np.zeros(count, dtype=bool)
+        return cls(
+            points, normals, spots.features, errors, rubbing, torsion, certain, nothing, scale, places, makes, plane
+        )
 
     @classmethod
     def touching(
@@ -101,6 +120,8 @@ class Candidates:
             tuple(contacts[0].feature or "the surface" for _, contacts in found),
             np.array([max(c.provenance.normal_error for c in one) for _, one in found], dtype=np.float64),
             np.full(len(found), friction),
+            np.array([max(c.torsion for c in one) for _, one in found]),
+            np.array([any(len(clause) > 1 for c in one for clause in c.clauses) for _, one in found], dtype=bool),
             (None,) * len(found),
             scale,
             np.array([element.at for element, _ in found]),
@@ -118,6 +139,8 @@ class Candidates:
             (*self.features, *others.features),
             np.append(self.errors, others.errors),
             np.append(self.friction, others.friction),
+            np.append(self.torsion, others.torsion),
+            np.append(self.vague, others.vague),
             (*self.elements, *others.elements),
             self.scale,
             np.concatenate([self.places, others.places]),
@@ -152,25 +175,43 @@ class Candidates:
         """Face vectors [e; (x - reference) X e / length] of forces e with a normal part of 1, shape (n, k, d).
 
         Args:
-            rough: the edges of a pyramid in each friction cone, shape (n, k e, d); else the normals.
+            rough: the edges of a pyramid in each friction cone, shape (n, k e, d), of soft tips with moments about
+                their normals; else the normals.
             outer: the pyramid around the cone instead.
         """
         if not rough:
             return self._faces(self.points, self.normals)
         n, _, p = self.normals.shape
-        first, second, around = np.zeros_like(self.normals), np.zeros_like(self.normals), np.array([0, np.pi])
-        size = 1.0
-        if p == 2:
-            first = np.stack([-self.normals[..., 1], self.normals[..., 0]], axis=-1)
-        else:
-            around = 2 * np.pi * np.arange(EDGES) / EDGES
-            size = 1.0 / np.cos(np.pi / EDGES) if outer else 1.0
-            for index in np.argwhere(self.normals.any(axis=2)).tolist():
-                first[tuple(index)], second[tuple(index)] = tangents(self.normals[tuple(index)])
-        turned = np.cos(around)[:, None] * first[:, :, None] + np.sin(around)[:, None] * second[:, :, None]
-        edges = self.normals[:, :, None] + size * self.friction[:, None, None, None] * turned
+        first, second, around = self._across(), np.zeros_like(self.normals), np.array([[1.0, 0, 0], [-1, 0, 0]])
+        if p == 3:
+            second, around = np.cross(self.normals, first), self._around("outer" if outer else "inner")
+        turned = around[:, :1] * first[:, :, None] + around[:, 1:2] * second[:, :, None]
+        edges = self.normals[:, :, None] + self.friction[:, None, None, None] * turned
         points = np.broadcast_to(self.points[:, :, None], edges.shape)
-        return self._faces(points.reshape(n, -1, p), edges.reshape(n, -1, p))
+        faces = self._faces(points.reshape(n, -1, p), edges.reshape(n, -1, p))
+        if self.torsion.any():
+            # a soft tip on a surface that may be round has none for certain
+            torsion = self.torsion if outer else np.where(self.plane, self.torsion, 0.0)
+            spins = (self.friction * torsion / self.scale.length)[:, None, None, None] * around[:, 2:]
+            faces[..., 3:] += (spins * self.normals[:, :, None]).reshape(n, -1, 3)
+        return faces
+
+    def _across(self) -> Several:
+        """A unit tangent at each point."""
+        if self.normals.shape[2] == 2:
+            return np.stack([-self.normals[..., 1], self.normals[..., 0]], axis=-1)
+        first = np.zeros_like(self.normals)
+        said = self.normals.any(axis=2)
+        first[said] = tangents(self.normals[said])[0]
+        return first
+
+    def _around(self, side: Side) -> Points:
+        """Corners of a polygon in or around the unit circle, or with soft tips of a polytope in or around the ball."""
+        if self.torsion.any():
+            return limit_directions(EDGES, side)
+        angles = 2 * np.pi * np.arange(EDGES) / EDGES
+        size = 1.0 / np.cos(np.pi / EDGES) if side == "outer" else 1.0
+        return size * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(EDGES)])
 
     def chosen(self, which: Indices | Mask) -> Candidates:
         """Some of them, in that order."""
@@ -182,6 +223,8 @@ class Candidates:
             features=tuple(self.features[number] for number in numbers),
             errors=self.errors[numbers],
             friction=self.friction[numbers],
+            torsion=self.torsion[numbers],
+            vague=self.vague[numbers],
             elements=tuple(self.elements[number] for number in numbers),
             places=self.places[numbers],
             makes=tuple(self.makes[number] for number in numbers),
@@ -199,11 +242,12 @@ class Candidates:
         if not found:
             return self
         there = Candidates.touching(found, self.scale)
-        vague = there.errors > max(float(self.errors.max(initial=0.0)), known_to)
+        blurred = there.errors > max(float(self.errors.max(initial=0.0)), known_to)
         there = replace(
             there,
-            normals=np.where(vague[:, None, None], 0.0, there.normals),
-            errors=np.where(vague, 0.0, there.errors),
+            normals=np.where(blurred[:, None, None], 0.0, there.normals),
+            errors=np.where(blurred, 0.0, there.errors),
+            vague=there.vague | blurred,
         )
         return self.and_also(
             replace(

@@ -73,6 +73,8 @@ def _searched(asked: Asked) -> DesignResult:
                     found = not_yet_no(found, left_out)
                 found = replace(found, notes=(*found.notes, *left_out_notes))
                 best = found if best is None else better_of(best, found)
+                if cancelled():
+                    best = _stopped(best)
                 if best.satisfied is Answer.YES or cancelled():
                     return best if free is None else _instead(best, free, certain)
         certain = best is not None and best.satisfied is Answer.NO
@@ -81,6 +83,14 @@ def _searched(asked: Asked) -> DesignResult:
         free = best.free  # the next plan has to live with it
     assert best is not None  # there is at least one plan, and candidates for it
     return best
+
+
+def _stopped(best: DesignResult) -> DesignResult:
+    """What was found before the search was stopped; it proves no no."""
+    if best.satisfied is not Answer.NO:
+        return best
+    reason = f"{best.reason}; the search was stopped before all was tried"
+    return replace(best, satisfied=Answer.UNDECIDED, reason=reason)
 
 
 def _instead(second: DesignResult, free: Vector, certain: bool) -> DesignResult:

@@ -6,19 +6,32 @@ computed before elements in it are barred, on the relaxed problem, so that they 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fixture_design.arrays import Indices, Mask, Point
+from fixture_design.arrays import Indices, Mask, Point, cross_products
+from fixture_design.contacts import unit_normal
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.found import Found
+from fixture_design.design.plates_apart import Plates
 from fixture_design.design.problem import Problem
 from fixture_design.design.standing import Standing
 from fixture_design.design.task import Task
 from fixture_design.design.ways import Ways
 from fixture_design.errors import GeometryError
-from fixture_design.layout import PinTip, Stem, StraightWays, Tip, Verdict, element_name, pin_stem, stem_of
+from fixture_design.layout import (
+    LineTip,
+    PadTip,
+    PinTip,
+    Stem,
+    StraightWays,
+    Tip,
+    Verdict,
+    element_name,
+    pin_stem,
+    stem_of,
+)
 
 #: Names of elements by candidate.
 Names = Mapping[int, str]
@@ -52,23 +65,43 @@ def standing(task: Task, candidates: Candidates) -> Standing | None:
             assert element.axis is not None
             stems[index] = pin_stem(element.tip, candidates.scale.length)
             normals[index] = -np.asarray(element.axis)
-    return Standing.of(feet, normals, stems)
+    return Standing.of(feet, normals, stems, _plates(task, candidates, stems))
 
 
 def _names_of_start(task: Task) -> set[str]:
     return {element.name for element in task.start.elements} if task.start else set()
 
 
-def _stems(task: Task, candidates: Candidates) -> list[Stem | None]:
-    """Of new elements, and of the start's as they are written; bodies, contacts that were given, and pins have none."""
+def _plates(task: Task, candidates: Candidates, stems: Sequence[Stem | None]) -> Plates | None:
+    """The plates that pads and lines are; None where there are none."""
+    tips = _tip_of_each(task, candidates)
+    if not any(isinstance(tip, PadTip | LineTip) for tip in tips):
+        return None
+    middles, halves = candidates.places.copy(), np.zeros((len(tips), 3, 3))
+    for index, (tip, stem) in enumerate(zip(tips, stems, strict=True)):
+        if stem is not None and isinstance(tip, PadTip | LineTip):
+            normal = candidates.normals[index, 0]
+            first = unit_normal(tip.along - (tip.along @ normal) * normal)
+            length, width = (tip.width, tip.height) if isinstance(tip, PadTip) else (tip.length, stem.tip)
+            edges = np.array([length * first, width * cross_products(normal, first), stem.tip * normal])
+            middles[index], halves[index] = middles[index] + edges[2] / 2, edges / 2
+    return Plates(middles, halves)
+
+
+def _tip_of_each(task: Task, candidates: Candidates) -> list[Tip | None]:
+    """Of new elements, and of the start's as they are written; bodies and contacts that were given have none."""
     theirs = _names_of_start(task)
-    tips: list[Tip | None] = [
+    return [
         make.tip if make is not None else element.tip if element is not None and element.name in theirs else None
         for make, element in zip(candidates.makes, candidates.elements, strict=True)
     ]
+
+
+def _stems(task: Task, candidates: Candidates) -> list[Stem | None]:
+    """Of new elements, and of the start's as they are written; bodies, contacts that were given, and pins have none."""
     known: dict[tuple[type[Tip], float | None], Stem] = {}
     stems: list[Stem | None] = []
-    for tip in tips:
+    for tip in _tip_of_each(task, candidates):
         if tip is None or isinstance(tip, PinTip):
             stems.append(None)
             continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -37,7 +38,7 @@ def first_that_holds(asked: Layout, ways: Ways, problem: Problem, fewest: Fewest
     locators, clamps = best_places(problem, fewest.locators, fewest.clamps, fewest.pool)
     first = _drawn_up(asked, ways, problem, (locators, clamps), fewest)
     if first.satisfied is Answer.YES:
-        return first
+        return _without_needless(ways, first)
     others = [(fewest.locators, fewest.clamps)]
     others = [one for one in others if not all(map(np.array_equal, one, (locators, clamps)))]
     exacter = more_exact(problem, locators, clamps, fewest.pool) if _inexact(first.verdict) else ()
@@ -46,8 +47,27 @@ def first_that_holds(asked: Layout, ways: Ways, problem: Problem, fewest: Fewest
             break
         result = _drawn_up(asked, ways, problem, one, fewest)
         if result.satisfied is Answer.YES:
-            return result
+            return _without_needless(ways, result)
     return first
+
+
+def _without_needless(ways: Ways, result: DesignResult) -> DesignResult:
+    """Without elements that were added for what moves, raised preloads or other places have brought about since."""
+    for step in result.steps:
+        layout, changes = result.layout, result.changes
+        assert layout is not None
+        assert changes is not None
+        if step.action != "added" or changes.found <= max(changes.bound, 1):
+            continue
+        less = replace(layout, elements=tuple(e for e in layout.elements if e.name != step.element))
+        verdict = ways.verify(less)
+        if verdict.satisfied is Answer.YES:
+            steps = tuple(other for other in result.steps if other is not step)
+            result = replace(
+                result, layout=less, verdict=verdict, steps=steps, margin=closure_margin(verdict),
+                changes=replace(changes, found=len(steps)),
+            )  # fmt: skip
+    return result
 
 
 def _inexact(verdict: Verdict | None) -> bool:
@@ -77,5 +97,5 @@ def _drawn_up(
     if satisfied is not Answer.YES:  # no number of changes is known to do
         reason = f"what was found does not verify: {failing(verdict)}"
         return DesignResult(Answer.UNDECIDED, after, verdict, tuple(steps), reason=reason)
-    changes = ChangeBound(len(steps), fewest.bound, fewest.complete)
+    changes = ChangeBound(len(steps), fewest.bound, fewest.complete, len(problem.new))
     return DesignResult(satisfied, after, verdict, tuple(steps), margin=closure_margin(verdict), changes=changes)

@@ -73,7 +73,7 @@ def pinned_best_first(
     assert rules is not None
     found: list[tuple[tuple[float, ...], Pinned]] = []
     least = float("inf")
-    pairs, complete = _pairs(ways.holes(), rules, problem.limits.loading)
+    pairs, complete = _pairs(ways.holes(), rules, problem.limits.way_out)
     for number, (first, second, out) in enumerate(pairs):
         if problem.cancelled():
             complete = False
@@ -92,15 +92,19 @@ def pinned_best_first(
 
 def _bounded_by(pinned: Pinned, least: float, complete: bool) -> Find:
     def again(problem: Problem, seed: int, progress: Progress) -> Outcome:
-        return replace(pinned.search(problem, seed), least_clamps=int(least), complete=complete)
+        found = pinned.search(problem, seed)
+        # other pairs may be more exact, or do with less: what is known of these is of this pair
+        return replace(found, least_clamps=int(least), complete=complete, best_accuracy=None, best_preload=None)
 
     return again
 
 
 def _pairs(
-    holes: tuple[Hole, ...], rules: PinRules, loading: Point | None
+    holes: tuple[Hole, ...], rules: PinRules, asked: Point | None
 ) -> tuple[list[tuple[Hole, Hole, Point]], bool]:
-    """A hole for the round pin, one for the other, and a way out, widest first; and whether these are all there are."""
+    """A hole for the round pin, one for the other, and a way out, the one that is asked for where one is, widest first;
+    and whether these are all there are.
+    """
     low, high = rules.diameters
     usable = [hole for hole in holes if low <= hole.diameter - rules.clearance <= high]
     by_way: dict[tuple[float, ...], list[tuple[float, Hole, Hole, Point]]] = {}
@@ -114,7 +118,7 @@ def _pairs(
         if second.across is not None and abs(second.across @ cross_products(axis, line)) < _ACROSS * width:
             continue
         for out in (axis, -axis):
-            if loading is not None and float(-loading @ out) < (1 - COPLANAR_ANGLE) * np.linalg.norm(loading):
+            if asked is not None and float(asked @ out) < 1 - COPLANAR_ANGLE:
                 continue
             by_way.setdefault(tuple(np.round(out, 6).tolist()), []).append((width, first, second, out))
     widest = [sorted(pairs, key=lambda pair: -pair[0])[:MOST_PAIRS] for pairs in by_way.values()]

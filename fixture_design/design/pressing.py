@@ -70,7 +70,7 @@ def _bounded(
         more = _worth_it(program.use(pushes.duals, pool), pool, 0.0, locators)
         some = _worth_it(program.worth(pushes.duals, clampable), clampable, pushes.price, clamps)
         if not len(more) and not len(some):
-            if np.isinf(pushes.total) and _rubs_too_little(problem):
+            if np.isinf(pushes.total) and (pushes.barely or _rubs_too_little(problem)):
                 break
             reacting = np.argsort(-pushes.reactions)[: int((pushes.reactions > 0).sum())]
             return pushes.total, locators[reacting]

@@ -9,14 +9,14 @@ from functools import cached_property
 import numpy as np
 
 from fixture_design.arrays import Indices, Mask, Point, Points, Rows, Vector
-from fixture_design.design.candidates import Candidates, Several
+from fixture_design.design.candidates import Candidates, Several, stops
 from fixture_design.design.duties import Duties
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.locating import Features, apart
 from fixture_design.design.pushing import Program
 from fixture_design.design.standing import Standing
 from fixture_design.design.task import Limits, Objective
-from fixture_design.tolerances import DEFAULT
+from fixture_design.tolerances import DEFAULT, PLANE_KNOWN_TO
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,9 +165,19 @@ class Problem:
 
     @property
     def vague(self) -> bool:
-        """Whether elements of the start may do more than their rows say: where alternatives, or normals, are open."""
-        rows = self.candidates.rows
-        return any(e is not None and not rows[index].any() for index, e in enumerate(self.candidates.elements))
+        """Whether some candidate, most often an element of the start, may do more than its rows say."""
+        return bool(self.candidates.vague.any())
+
+    @property
+    def uncertain(self) -> bool:
+        """Whether some normals are known less well than a file's digits leave those of plane facets."""
+        return bool(self.candidates.errors.max(initial=0.0) > PLANE_KNOWN_TO)
+
+    @property
+    def barely_stopped(self) -> bool:
+        """Whether the motion that is never stopped is, by no more than rounding does."""
+        zero = self.candidates.tolerances.zero
+        return self.never_stopped is not None and bool(stops(self.bounding_rows, self.never_stopped, zero).any())
 
     @property
     def crowded(self) -> bool:

@@ -24,7 +24,7 @@ from jaxtyping import Float
 from fixture_design.arrays import Indices, Mask, Rows, Weights
 from fixture_design.design.candidates import Several
 from fixture_design.design.duties import Duties
-from fixture_design.tolerances import DEFAULT, PRESSED
+from fixture_design.tolerances import DEFAULT, LOAD_TIE, PRESSED
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,8 @@ class Pushes:
 
     Attributes:
         total: their sum [N]; inf where they cannot balance the wrenches within their limits.
-        unbalanced: what is left of the wrenches then, the sum of all coordinates [N].
+        unbalanced: what is left of the wrenches then, the sum of all coordinates [N].  barely: whether that is no more
+            than `LOAD_TIE` of the largest: they are at the limit.
         each: of every clamp [N]; 0 of those that only react.
         duals: y, what a unit of each wrench costs, shape (w, d).
         price: what a unit of push costs, next to these [-]: 1 and what it takes to keep locators pressed; no more than
@@ -47,6 +48,7 @@ class Pushes:
     duals: Float[np.ndarray, "w d"]
     price: float
     reactions: Weights
+    barely: bool = False
 
     def less_than(self, other: Pushes, part: float) -> bool:
         """Whether they push with less by this part of it; or, where neither balances, leave less by it."""
@@ -125,7 +127,7 @@ class Program:
         duals = priced.eqlin.marginals.reshape(len(self.duties.wrenches), -1)[:, : self.rough.shape[2]]
         reactions = self._reactions(found.x, reacting, system)[: len(locators)]
         if left > DEFAULT.near:
-            return Pushes(np.inf, left * unit, each, duals, pressing, reactions)
+            return Pushes(np.inf, left * unit, each, duals, pressing, reactions, left <= LOAD_TIE)
         return Pushes(float(each.sum()), 0.0, each, duals, 1.0 + pressing, reactions)
 
     def total(self, locators: Indices, clamps: Indices) -> float:

@@ -68,8 +68,7 @@ def ways_out(problem: Problem, seed: int) -> tuple[list[tuple[Point | None, Mask
     flat_normals = several.reshape(-1, several.shape[2])
     said: Mask = np.any(flat_normals, axis=1)
     unit, which = different(flat_normals[said])
-    loading = problem.limits.loading
-    asked = None if loading is None else -loading / np.linalg.norm(loading)
+    asked = problem.limits.way_out
     found, complete = cells(unit, asked, seed, sliding=not problem.lets_go)
     ways: list[tuple[Point | None, Mask]] = []
     for cell in found[:MOST_BOUNDED]:

@@ -107,7 +107,7 @@ class _Mending:
             if np.isfinite(found.found):
                 result = first_that_holds(self.asked, self.ways, problem, self._with_bound(found))
                 return self._with_notes(result, left_out)
-            proven &= found.complete and not some.errors.any()
+            proven &= found.complete and not (some.errors.any() or problem.vague or problem.barely_stopped)
         what = "no changes among these candidates" if proven else "no changes were found that"
         reason = f"{what} make it locate, let out and close what it has to"
         result = DesignResult(Answer.NO if proven else Answer.UNDECIDED, None, verdict=self.before, reason=reason)

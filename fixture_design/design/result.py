@@ -48,11 +48,13 @@ class ChangeBound:
     Attributes:
         found: elements moved, added or removed, and preloads changed.
         bound: no layout among the candidates takes fewer.  complete: whether that is so in all directions out.
+        candidates: how many places elements could be moved or added to; None where nothing had to change.
     """
 
     found: int
     bound: int
     complete: bool
+    candidates: int | None = None
 
     @property
     def proven(self) -> bool:

@@ -54,7 +54,7 @@ def _not_held(problem: Problem, outcome: Outcome, bound: Bound | None, start: St
     """No clamps hold the loads within the limits of their preload, where there are any."""
     limited = problem.duties is not None and bool(np.isfinite(problem.duties.high[problem.duties.pushes]).any())
     within = " within the limits of the preload" if limited else ", whatever the clamps push with"
-    if outcome.best_preload == np.inf and outcome.complete:
+    if outcome.best_preload == np.inf and outcome.complete and not problem.uncertain:
         reason = f"no layout among these candidates holds the loads{within}"
         return DesignResult(Answer.NO, None, steps=start.steps, bound=bound, reason=reason)
     reason = f"no layout was found that holds the loads{within}"
@@ -68,7 +68,8 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
     slides, are only bounded.
     """
     limits, steps = problem.limits, start.steps
-    complete = outcome.complete and problem.determines
+    sure = not (problem.uncertain or problem.cancelled())
+    complete = outcome.complete and problem.determines and sure
     never = outcome.found is None and outcome.best_preload == np.inf
     if never or (outcome.found is not None and not outcome.found.holds):
         return _not_held(problem, outcome, bound, start)
@@ -81,7 +82,7 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
         return DesignResult(answer, None, steps=steps, reason=reason)
     for what, least, most in (("locators", bound.locators, limits.locators), ("clamps", bound.clamps, limits.clamps)):
         if most is not None and least > most:
-            certain = bound.complete and (what == "clamps" or problem.determines)
+            certain = bound.complete and sure and (what == "clamps" or problem.determines)
             if certain and what == "clamps" and problem.lets_go:
                 allowed = most + problem.supporting
                 certain = least_clamps_sliding(problem, seed, allowed + 1) > allowed
@@ -94,7 +95,7 @@ def without_layout(problem: Problem, outcome: Outcome, bound: Bound | None, star
         allowed = limits.locators + limits.clamps + problem.supporting
         if allowed < bound.elements:
             reason = f"at least {bound.elements} elements are needed among these candidates, and {allowed} are allowed"
-            return DesignResult(Answer.NO if bound.complete and not problem.lets_go else Answer.UNDECIDED,
+            return DesignResult(Answer.NO if bound.complete and sure and not problem.lets_go else Answer.UNDECIDED,
                                 None, steps=steps, bound=bound, reason=reason)  # fmt: skip
     needed = f"{bound.locators} locators and {bound.clamps} clamps"
     needed = needed if outcome.least_elements is None else f"{bound.elements} elements"

@@ -6,7 +6,7 @@ are in each other's way if any two of their capsules overlap:
     min over s, t in [0, 1] of |a + s d - b - t e|  <  r + r'
 
 which has a closed form (Ericson, Real-time collision detection, 2004, section 5.1.9). The stem's capsule begins at
-the tip and has room for it.
+the tip and has room for it. The plate of a pad or a line is a box (`plates_apart`).
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from jaxtyping import Float
 
 from fixture_design.arrays import Indices, Mask, Point, Points, Weights
 from fixture_design.design.candidates import Several
+from fixture_design.design.plates_apart import Plates
 from fixture_design.layout import Stem
 
 #: Sine of an angle, squared, below which two stems are parallel [-].
@@ -33,21 +34,23 @@ class Standing:
     Attributes:
         starts, ways: of the segments, from ``starts`` to ``starts + ways`` in W, shape (n, 2, 3) [m].
         radii: shape (n, 2) [m].
+        plates: boxes at the tips of those that have one; None where nobody has.
     """
 
     starts: Several
     ways: Several
     radii: Float[np.ndarray, "n 2"]
+    plates: Plates | None = None
     _known: dict[int, Mask] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, feet: Points, normals: Points, stems: Sequence[Stem | None]) -> Standing:
+    def of(cls, feet: Points, normals: Points, stems: Sequence[Stem | None], plates: Plates | None = None) -> Standing:
         """Elements with their stems, along ``normals`` from their feet, shape (n, 3); None for who knows how."""
         sizes = {stem: np.array(_capsules(stem)) for stem in set(stems) if stem is not None}
         none = np.array([(0.0, 1.0, -np.inf)] * 2)
         low, high, radii = np.array([none if stem is None else sizes[stem] for stem in stems]).transpose(2, 0, 1)
         along = normals[:, None]
-        return cls(feet[:, None] + low[:, :, None] * along, (high - low)[:, :, None] * along, radii)
+        return cls(feet[:, None] + low[:, :, None] * along, (high - low)[:, :, None] * along, radii, plates)
 
     def beside(self, index: int) -> Mask:
         """Which candidates may stand beside one, shape (n,)."""
@@ -75,6 +78,10 @@ class Standing:
         """A ball around each element: its middle, and its radius; -inf around what is in nobody's way."""
         middles = self.starts[:, 0] + (self.starts[:, 1] + self.ways[:, 1] - self.starts[:, 0]) / 2
         reach = np.linalg.norm(self.starts[:, 0] - middles, axis=1) + self.radii.max(axis=1)
+        if self.plates is not None:
+            there = self.plates.there
+            away = np.linalg.norm(self.plates.middles - middles, axis=1)
+            reach[there] = np.maximum(reach, away + np.linalg.norm(self.plates.halves, axis=(1, 2)))[there]
         return middles, reach
 
     def _beside(self, index: int) -> Mask:
@@ -87,6 +94,8 @@ class Standing:
                     self.starts[index, mine], self.ways[index, mine], self.starts[near, other], self.ways[near, other]
                 )
                 free &= away >= self.radii[index, mine] + self.radii[near, other]
+        if self.plates is not None:
+            free &= self.plates.apart(index, near, self.starts + self.ways / 2, self.ways / 2, self.radii)
         beside = np.ones(len(self.radii), dtype=bool)
         beside[near[~free]] = False
         beside[index] = True

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from fixture_design.contacts import Contact
 from fixture_design.design.candidates import Candidates
 from fixture_design.design.removing import Cleared, cleared
@@ -54,7 +52,7 @@ def begun(task: Task, candidates: Candidates, ways: Ways, keep_all: bool, *, lea
     fixed = [index for index, element in numbers.items() if element.fixed]
     locators = [i for i, e in numbers.items() if e.role == "locator" and (keep_all or e.fixed)]
     start = Start(everything)
-    out = None if task.limits.loading is None else -np.asarray(task.limits.loading)
+    out = task.limits.way_out
     kept: Cleared = cleared(everything, locators, fixed, start.name, leaves=leaves, opens=opens, out=out)
     let_go = [i for i, e in numbers.items() if e.role == "locator" and i not in locators]
     steps = (*(Step("removed", start.name(index), "spare") for index in let_go), *kept.steps)

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from fixture_design.arrays import Point, Points, Vector
 from fixture_design.layout import KeyFeature, Layout, Load, Part, PointTip, Requirement, Space, StemSizes, Tip
 from fixture_design.tolerances import SURFACE_GAP
@@ -85,6 +87,11 @@ class Limits:
     spacing: float = 0.0
     loading: Point | None = None
     preload: tuple[float, float] | None = None
+
+    @property
+    def way_out(self) -> Point | None:
+        """The unit direction in which the part comes out, where ``loading`` says it."""
+        return None if self.loading is None else -np.asarray(self.loading) / np.linalg.norm(self.loading)
 
 
 @dataclass(frozen=True, eq=False)

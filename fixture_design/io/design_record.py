@@ -62,6 +62,7 @@ def _bound(bound: Bound) -> Data:
 def _changes(changes: ChangeBound) -> Data:
     return {
         "found": changes.found, "bound": changes.bound, "proven": changes.proven, "complete": changes.complete,
+        "candidates": changes.candidates,
     }  # fmt: skip
 
 

@@ -94,6 +94,7 @@ def test_json_is_the_summary(command: Callable, tmp_path: Path) -> None:
         (["lib.jsonl", "-o", "o.jsonl", "--report", "r", "--table", "r"], "r: two outputs would go to one file"),
         (["lib.jsonl", "-o", "o.jsonl", "--against", "o.jsonl"], "o.jsonl: the file cannot be read"),
         (["lib.jsonl", "-o", "o.jsonl", "--table", "no/t.csv"], "no/t.csv: the folder to write to is not there"),
+        (["lib.jsonl", "-o", "o.jsonl", "--table", "cutter.csv"], "cutter.csv: this file is no table of a batch"),
         (["lib.jsonl", "-o", "o.jsonl", "--table", "t.xlsx"], "ends in .csv or .parquet"),
         (["lib.jsonl", "-o", "o.jsonl", "--against", "old.jsonl"], "old.jsonl: the file cannot be read"),
         (["lib.jsonl", "-o", "o.jsonl", "--against", "notes.txt"], "notes.txt: line 1: the line is no record"),

@@ -246,6 +246,12 @@ def test_inputs_are_not_overwritten(command: Command, box: Path, tmp_path: Path)
         assert "is an input" in ran.err
     assert box.read_bytes() == before
     task = saved(tmp_path, PLANAR)
+    cutter = tmp_path / "cutter.csv"
+    cutter.write_text("x,y,fx,fy\n1,1,1,0\n")
+    loaded = tmp_path / "loaded.task.yaml"
+    loaded.write_text(PLANAR + "\nloads: [{name: cut, path: cutter.csv}]\n")
+    assert command("design", loaded, "--csv", cutter).code == 2
+    assert cutter.read_text().startswith("x,y,fx,fy")
     assert command("design", task, "-o", task).code == 2
     assert command("design", task, "-o", tmp_path / "no" / "folder.yaml").code == 2
     assert command("design", tmp_path / "nothing.stl").code == 2

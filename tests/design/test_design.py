@@ -174,6 +174,14 @@ def test_cancelled_at_once_gives_what_is_there() -> None:
     assert result.satisfied in (Answer.UNDECIDED, Answer.YES)
 
 
+def test_a_search_that_was_stopped_proves_no_no() -> None:
+    spots = shaft(30)  # without friction it spins, and with friction there would be a layout
+    stopped = design(task(spots, friction=0.3), Fake(spots), cancelled=lambda: True)
+    assert stopped.satisfied is Answer.UNDECIDED
+    assert "stopped" in (stopped.reason or "")
+    assert design(task(spots, friction=0.3), Fake(spots)).satisfied is Answer.YES
+
+
 def test_the_function_is_found_under_its_name_also_once_the_package_is_loaded() -> None:
     import fixture_design as fd  # noqa: PLC0415 - as a user does
 

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+import yourdfpy
 
 from fixture_design.design import CandidateRules, DesignResult, Task, design
 from fixture_design.design.touching import candidates_of
 from fixture_design.errors import GeometryError
+from fixture_design.io import write_urdf
 from fixture_design.layout import Answer, LineTip, PadTip, Part, PointTip, Pose, SoftTip, SphereTip, Tip, element_name
 from fixture_design.verification import check
 from fixture_design.verification.surface import PartSurface
@@ -93,6 +95,29 @@ def test_in_the_plane_a_line_and_a_point_locate() -> None:
     result = designed(polygon, tip, PointTip(), require=wanted)
     assert kinds(result, "locator") == ["PadTip", "PointTip"]
     assert ranks(result) == (3, 3)
+
+
+def test_plates_leave_room_for_each_other(tmp_path: Path) -> None:
+    """Large pads on a flat box: no point of one plate is in another."""
+    trimesh.creation.box((0.1, 0.05, 0.02)).export(tmp_path / "flat.stl")
+    result = designed(part(tmp_path / "flat.stl"), PadTip(0.06, 0.03, X))
+    assert result.satisfied is Answer.YES
+    assert result.layout is not None
+    assert result.verdict is not None
+    write_urdf(result.layout, result.verdict, tmp_path / "pads.urdf")
+    plates = {}
+    for link in yourdfpy.URDF.load(str(tmp_path / "pads.urdf")).robot.links[1:]:
+        solid = link.collisions[0]
+        plates[link.name] = np.array(solid.geometry.box.size), solid.origin
+    model = yourdfpy.URDF.load(str(tmp_path / "pads.urdf"))
+    assert len(plates) == len(result.layout.elements)
+    grid = np.stack(np.meshgrid(*[np.linspace(-0.499, 0.499, count) for count in (61, 31, 5)]), axis=-1).reshape(-1, 3)
+    for name, other in combinations(plates, 2):
+        for mine, theirs in ((name, other), (other, name)):
+            X_WM, X_WT = (model.get_transform(link) @ plates[link][1] for link in (mine, theirs))
+            points = (grid * plates[mine][0]) @ X_WM[:3, :3].T + X_WM[:3, 3]
+            local = (points - X_WT[:3, 3]) @ X_WT[:3, :3]
+            assert not (np.abs(local) < plates[theirs][0] / 2 * 0.999).all(axis=1).any(), (mine, theirs)
 
 
 def test_no_two_elements_would_do(solid: Part) -> None:
