@@ -10,7 +10,8 @@ import numpy as np
 from fixture_design.arrays import Mask
 from fixture_design.assembly import rotations
 from fixture_design.assembly.assembly import Assembly, Region
-from fixture_design.assembly.circles import crossed
+from fixture_design.assembly.circle_crossings import ALONGSIDE
+from fixture_design.assembly.circles import ALONG, crossed, lengths_of
 from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.drilled_block import DrilledBlock
 from fixture_design.assembly.pair_equations import PairEquations
@@ -21,7 +22,7 @@ from fixture_design.assembly.round_planes import Flat
 from fixture_design.assembly.spatial_motions import SpatialMotions
 from fixture_design.assembly.touch import Touch
 from fixture_design.assembly.turned_body import TurnedBody
-from fixture_design.tolerances import TOUCHING
+from fixture_design.tolerances import APART, TOUCHING
 
 #: Points of a disk's rim that stand for all of it, where it lies on a plane: forces and motions there are approximate.
 RIM_POINTS = 12
@@ -29,6 +30,9 @@ RIM_POINTS = 12
 #: What a pair counts as beyond an end where it has no place, relative to the size [-]: nothing solves that, and steps
 #: towards a place are hardly damped.
 _NOWHERE = 1e-2
+
+#: `APART` by this is neither apart nor touching [-].
+_BETWEEN = 30.0
 
 #: A touch this near to the end of a feature, relative to the size, may be in one point with another pair's [-].
 _JOINED = 1e-5
@@ -105,7 +109,19 @@ class RoundGeometry(SpatialMotions):
                 tilts, _ = pair.flat.tilts(place)
                 parts += [self._arm(pair) * tilts[:, 0], self._arm(pair) * tilts[:, 1]]
             columns.append(np.where(touch.exists, np.linalg.norm(parts, axis=0), self.size))
-        return np.column_stack(columns)
+        return self._doubted(place, np.column_stack(columns))
+
+    def _doubted(self, place: Placement, distances: np.ndarray) -> np.ndarray:
+        """The distances, neither touching nor apart where a circle on a rim is so nearly along it that which of their
+        pairs touch there is not told by anything that is solved."""
+        for pair, number in zip(self.pairs, self._firsts, strict=True):
+            if pair.rim_axis is not None:
+                sine = lengths_of(crossed(place.axis, np.broadcast_to(pair.rim_axis, place.axis.shape)))
+                rows = np.flatnonzero((sine > ALONG) & (sine < ALONGSIDE))
+                joined = [self.names.index(name) for name in pair.joins if name in self.names]
+                rows = rows[(distances[np.ix_(rows, joined)] <= TOUCHING * self.size).sum(axis=1) > 1]
+                distances[rows, number] = APART / _BETWEEN * self.size
+        return distances
 
     def _arm(self, pair: RoundPair) -> float:
         """What makes lengths of tilts: the disk's radius."""
@@ -154,12 +170,18 @@ class RoundGeometry(SpatialMotions):
 
     def _join(self, chosen: np.ndarray, ends: dict, values: np.ndarray, gradients: np.ndarray) -> None:
         for pair, number in zip(self.pairs, self._firsts, strict=True):
+            replaced = np.zeros(chosen.shape, dtype=bool)
             for name in pair.joins:
                 if name in ends:
                     rows, beyond, slide = ends[name]
                     at, column = np.nonzero((chosen[rows] == number) | (chosen[rows] == number + 1))
-                    values[rows[at], column], gradients[rows[at], column] = 0.0, 0.0
-                    values[rows[at], column, 0], gradients[rows[at], column, 0] = beyond[at], slide[at]
+                    here = rows[at], column
+                    # two ends at once are two equations
+                    row = np.where(replaced[here], 2, 0)
+                    fresh = rows[at][row == 0], column[row == 0]
+                    values[fresh], gradients[fresh] = 0.0, 0.0
+                    values[*here, row], gradients[*here, row] = beyond[at], slide[at]
+                    replaced[here] = True
 
     @property
     def ending(self) -> Mask:
@@ -225,6 +247,23 @@ class RoundGeometry(SpatialMotions):
                 ends.append(bool(at_end[number]))
         whole = tuple(flat is not None for flat in flats)
         return ContactRows(np.array(rows), np.array(ends), tuple(owned[k] for k in pairs.tolist()), whole)
+
+    def aligned(self, q: np.ndarray) -> np.ndarray:
+        """The least turns that put the moving body's axis along that of a hole, either way, where the region allows.
+
+        A circle in the plane of a rim is the border between leaning towards where they touch, and away from it.
+        """
+        place, found = self.place(q), [q[:0]]
+        if self.region.turning == "fixed":
+            return q[:0]
+        for hole in (hole for block in self.fixed for hole in block.holes):
+            for axis in (hole.axis, -hole.axis):
+                turn = crossed(place.axis, np.broadcast_to(axis, place.axis.shape))
+                sine, cosine = lengths_of(turn), place.axis @ axis
+                angle = np.arctan2(sine, cosine) / np.where(sine < ALONG, 1.0, sine)
+                turned = self.moved(q, np.concatenate([0 * turn, angle[:, None] * turn], axis=1))
+                found.append(turned[self.inside(turned)])
+        return np.concatenate(found)
 
     def coincident(self, q: np.ndarray, distance: float) -> np.ndarray:
         """Where two pairs touch in one point: a circle on a rim."""
