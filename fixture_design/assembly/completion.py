@@ -35,8 +35,8 @@ _TOGETHER = 256
 #: Where straight motions are looked at [-].
 _LOOKED_AT = (0.03, 0.1, 0.3, 0.6, 1.0)
 
-#: How short a part of a straight motion tells whether it begins where it should [-].
-_BEGINNING = 0.003
+#: Where it is looked at whether they begin as they go on, and how far aside they may be there, relative to the way [-].
+_BEGINNING, _BESIDE = (0.003, 0.01), 0.25
 
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
@@ -216,14 +216,18 @@ def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.nda
 
 
 def _begins(geometry: ContactGeometry, tight: Sorted, loose: Sorted, way: np.ndarray, kept: np.ndarray) -> np.ndarray:
-    """Whether motions begin where they should: a very short part of them holds the contacts, and not elsewhere.
+    """Whether motions begin along their way, with the contacts that they hold and others that were there.
 
-    Not all that they leave need be apart there.
+    Not all that they leave need be apart so near. Where tolerances alone make two states neighbours, the contacts are
+    held only far aside, or something else touches first.
     """
-    aim = geometry.moved(tight.q, _BEGINNING * way)
-    q, arrived = held(geometry, aim, kept)
-    aside = np.linalg.norm(geometry.between(aim, q) * weights(geometry), axis=1)
-    found = sort_configurations(geometry, q)
-    among = (found.touching | ~loose.touching).all(axis=1) & (tight.touching | ~found.touching).all(axis=1)
-    near = aside <= _BEGINNING * np.linalg.norm(way * weights(geometry), axis=1)
-    return arrived & found.admissible & among & near
+    good = np.ones(len(tight), dtype=bool)
+    for share in _BEGINNING:
+        aim = geometry.moved(tight.q, share * way)
+        q, arrived = held(geometry, aim, kept)
+        aside = np.linalg.norm(geometry.between(aim, q) * weights(geometry), axis=1)
+        found = sort_configurations(geometry, q)
+        among = (found.touching | ~loose.touching).all(axis=1) & (tight.touching | ~found.touching).all(axis=1)
+        near = aside <= _BESIDE * share * np.linalg.norm(way * weights(geometry), axis=1)
+        good &= arrived & found.admissible & among & near
+    return good

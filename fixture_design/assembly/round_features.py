@@ -195,9 +195,7 @@ def _with_rim(
         joins = [f"{names.circles[k]} - {other}" for other in beside]
         joins += [f"{surface} - {names.rims[which]}" for surface in names.surfaces[max(k - 1, 0) : k + 1]]
         reach = float(moving.reaches[k])
-        pairs.append(
-            RoundPair((name, name + AGAIN), cross, reach, which[0], joins=tuple(joins), rim_axis=rim.axis[0])
-        )
+        pairs.append(RoundPair((name, name + AGAIN), cross, reach, which[0], joins=tuple(joins), rim_axis=rim.axis[0]))
     sides = np.stack([np.minimum(boxes[:-1, 0], boxes[1:, 0]), np.maximum(boxes[:-1, 1], boxes[1:, 1])], axis=1)
     for k in np.flatnonzero(meeting(sides, corners)).tolist():
         name = f"{names.surfaces[k]} - {names.rims[which]}"

@@ -10,19 +10,19 @@ import numpy as np
 from fixture_design.arrays import Mask
 from fixture_design.assembly import rotations
 from fixture_design.assembly.assembly import Assembly, Region
-from fixture_design.assembly.circle_crossings import ALONGSIDE
 from fixture_design.assembly.circles import ALONG, crossed, lengths_of
 from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.drilled_block import DrilledBlock
 from fixture_design.assembly.pair_equations import PairEquations
 from fixture_design.assembly.placement import Placement
+from fixture_design.assembly.round_doubts import doubted
 from fixture_design.assembly.round_features import RoundPair, pairs_of
 from fixture_design.assembly.round_overlap import overlap_with
 from fixture_design.assembly.round_planes import Flat
 from fixture_design.assembly.spatial_motions import SpatialMotions
 from fixture_design.assembly.touch import Touch
 from fixture_design.assembly.turned_body import TurnedBody
-from fixture_design.tolerances import APART, TOUCHING
+from fixture_design.tolerances import TOUCHING
 
 #: Points of a disk's rim that stand for all of it, where it lies on a plane: forces and motions there are approximate.
 RIM_POINTS = 12
@@ -30,9 +30,6 @@ RIM_POINTS = 12
 #: What a pair counts as beyond an end where it has no place, relative to the size [-]: nothing solves that, and steps
 #: towards a place are hardly damped.
 _NOWHERE = 1e-2
-
-#: `APART` by this is neither apart nor touching [-].
-_BETWEEN = 30.0
 
 #: A touch this near to the end of a feature, relative to the size, may be in one point with another pair's [-].
 _JOINED = 1e-5
@@ -102,26 +99,14 @@ class RoundGeometry(SpatialMotions):
 
     def distances(self, q: np.ndarray) -> np.ndarray:
         place = self.place(q)
-        columns = []
-        for touch, pair in zip(self._touches(place), self._flats, strict=True):
+        touches, columns = self._touches(place), []
+        for touch, pair in zip(touches, self._flats, strict=True):
             parts = [touch.gap, np.maximum(touch.beyond, 0.0)]
             if pair is not None and pair.flat is not None:
                 tilts, _ = pair.flat.tilts(place)
                 parts += [self._arm(pair) * tilts[:, 0], self._arm(pair) * tilts[:, 1]]
             columns.append(np.where(touch.exists, np.linalg.norm(parts, axis=0), self.size))
-        return self._doubted(place, np.column_stack(columns))
-
-    def _doubted(self, place: Placement, distances: np.ndarray) -> np.ndarray:
-        """The distances, neither touching nor apart where a circle on a rim is so nearly along it that which of their
-        pairs touch there is not told by anything that is solved."""
-        for pair, number in zip(self.pairs, self._firsts, strict=True):
-            if pair.rim_axis is not None:
-                sine = lengths_of(crossed(place.axis, np.broadcast_to(pair.rim_axis, place.axis.shape)))
-                rows = np.flatnonzero((sine > ALONG) & (sine < ALONGSIDE))
-                joined = [self.names.index(name) for name in pair.joins if name in self.names]
-                rows = rows[(distances[np.ix_(rows, joined)] <= TOUCHING * self.size).sum(axis=1) > 1]
-                distances[rows, number] = APART / _BETWEEN * self.size
-        return distances
+        return doubted(self.pairs, place, touches, np.column_stack(columns), self.size)
 
     def _arm(self, pair: RoundPair) -> float:
         """What makes lengths of tilts: the disk's radius."""
@@ -249,13 +234,16 @@ class RoundGeometry(SpatialMotions):
         return ContactRows(np.array(rows), np.array(ends), tuple(owned[k] for k in pairs.tolist()), whole)
 
     def aligned(self, q: np.ndarray) -> np.ndarray:
-        """The least turns that put the moving body's axis along that of a hole, either way, where the region allows.
+        """Turned by the least angles that put the moving body's axis along that of a hole, where the region allows.
 
-        A circle in the plane of a rim is the border between leaning towards where they touch, and away from it.
+        A circle in the plane of a rim is the border between leaning towards where they touch, and away from it. One
+        configuration of each is enough: the others are the same turned about these axes.
         """
-        place, found = self.place(q), [q[:0]]
-        if self.region.turning == "fixed":
+        found = [q[:0]]
+        if self.region.turning == "fixed" or not len(q):
             return q[:0]
+        q = q[:1]
+        place = self.place(q)
         for hole in (hole for block in self.fixed for hole in block.holes):
             for axis in (hole.axis, -hole.axis):
                 turn = crossed(place.axis, np.broadcast_to(axis, place.axis.shape))
