@@ -12,15 +12,18 @@ little aside and onto the contacts of the looser; each that arrives is followed 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
+from scipy.linalg import block_diag
 
 from fixture_design.assembly.completion import connect
-from fixture_design.assembly.contact_geometry import weights
+from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.following import held
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.sampling import onto
 from fixture_design.assembly.sorting import Sorted, State, sort_configurations
-from fixture_design.tolerances import APART
+from fixture_design.tolerances import APART, DEPENDENT
 
 #: Shares of the way to a configuration of the looser state that are tried: a shorter one stays in one state.
 _SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)
@@ -28,8 +31,11 @@ _SHARES = (1.0, 0.3, 0.1, 0.03, 0.01)
 #: How far aside configurations are moved, relative to the radius [-].
 _ASIDE = (0.01, 0.003, 0.001)
 
-#: Directions aside, besides those along the axes, and the seed of their numbers: they are the same for every search.
-_DIRECTIONS, _SEED = 24, 11
+#: Random directions aside, besides those along axes, and the seed of their numbers: they are the same for every search.
+_DIRECTIONS, _SEED = 12, 11
+
+#: What is left of a unit normal beside others that makes it an axis of its own [-].
+_INDEPENDENT = 0.1
 
 #: Moved onto its contacts, a configuration is not farther from where it began than this many times as far [-].
 _NEAR = 3.0
@@ -80,18 +86,39 @@ def _aside(known: KnownStates, tight: State, loose: State, rng: np.random.Genera
     special = special[(special.touching == many.touching[0]).all(axis=1)]
     for begins in (special, many):
         if len(begins) and not _linked(known, tight, loose):
-            ways = _ways(known, len(begins), rng)
+            ways = _ways(known, begins, rng)
             _try(known, begins[np.repeat(np.arange(len(begins)), len(ways) // len(begins))], ways, few)
 
 
-def _ways(known: KnownStates, count: int, rng: np.random.Generator) -> np.ndarray:
+def _ways(known: KnownStates, begins: Sorted, rng: np.random.Generator) -> np.ndarray:
+    """Displacements of each configuration, (n k, d): along the axes of its contacts, by two of them, and others."""
     geometry = known.geometry
-    axes = np.eye(geometry.dimension)
     drawn = rng.normal(size=(_DIRECTIONS, geometry.dimension))
-    directions = np.vstack([axes, -axes, drawn / np.linalg.norm(drawn, axis=1, keepdims=True)])
-    lengths = np.array(_ASIDE)[:, None, None] * geometry.radius
-    ways = np.where(geometry.free, lengths * directions, 0.0).reshape(-1, geometry.dimension) / weights(geometry)
-    return np.tile(ways, (count, 1))
+    single = np.eye(geometry.dimension)
+    first, second = np.triu_indices(geometry.dimension, 1)
+    double = np.vstack([single[first] + single[second], single[first] - single[second]]) * np.sqrt(0.5)
+    special = np.vstack([single, double])
+    found = []
+    for frame in _frames(geometry, begins):
+        directions = np.vstack([special @ frame, -special @ frame, drawn / np.linalg.norm(drawn, axis=1)[:, None]])
+        lengths = np.array(_ASIDE)[:, None, None] * geometry.radius
+        found.append(np.where(geometry.free, lengths * directions, 0.0).reshape(-1, geometry.dimension))
+    return np.concatenate(found) / weights(geometry)
+
+
+def _frames(geometry: ContactGeometry, begins: Sorted) -> Iterator[np.ndarray]:
+    """Orthonormal displacements (d, d) along and about the normals of what touches, and what is square to them."""
+    pairs = _chosen(begins, 1)
+    for vectors in geometry.equations(begins.q, pairs).face_vectors:
+        rows: list[np.ndarray] = []
+        lengths = np.delete(vectors, geometry.turns, axis=1)
+        for row in np.vstack([lengths, np.eye(lengths.shape[1])]):
+            rest = row / max(np.linalg.norm(row), DEPENDENT)
+            for other in rows:
+                rest = rest - (rest @ other) * other
+            if np.linalg.norm(rest) > _INDEPENDENT:
+                rows.append(rest / np.linalg.norm(rest))
+        yield block_diag(*[np.array(rows)] * 2)
 
 
 def _try(known: KnownStates, begins: Sorted, ways: np.ndarray, few: Sorted) -> None:
