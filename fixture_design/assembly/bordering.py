@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from fixture_design.assembly.completion import connect
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
@@ -42,7 +41,7 @@ _NEAR = 3.0
 
 
 def look_nearer(known: KnownStates) -> None:
-    """Notes transitions between known states that the first order does not tell."""
+    """Notes transitions between known states in space that the first order does not tell."""
     rng = np.random.default_rng(_SEED)
     for tight in sorted(known.samples, key=lambda state: (len(state), state)):
         for loose in _looser(known, tight):
@@ -107,7 +106,7 @@ def _ways(known: KnownStates, begins: Sorted, rng: np.random.Generator) -> np.nd
 
 
 def _frames(geometry: ContactGeometry, begins: Sorted) -> Iterator[np.ndarray]:
-    """Orthonormal displacements (d, d) along and about the normals of what touches, and what is square to them."""
+    """Orthonormal displacements (6, 6) along and about the normals of what touches, and what is square to them."""
     pairs = _chosen(begins, 1)
     for vectors in geometry.equations(begins.q, pairs).face_vectors:
         rows: list[np.ndarray] = []
@@ -118,7 +117,7 @@ def _frames(geometry: ContactGeometry, begins: Sorted) -> Iterator[np.ndarray]:
                 rest = rest - (rest @ other) * other
             if np.linalg.norm(rest) > _INDEPENDENT:
                 rows.append(rest / np.linalg.norm(rest))
-        yield block_diag(*[np.array(rows)] * 2)
+        yield np.kron(np.eye(2), np.array(rows))
 
 
 def _try(known: KnownStates, begins: Sorted, ways: np.ndarray, few: Sorted) -> None:

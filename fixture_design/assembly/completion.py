@@ -17,6 +17,7 @@ from fixture_design.assembly.following import follow, held
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.point_motions import point_motions
+from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.assembly.sampling import onto
 from fixture_design.assembly.sorting import Sorted, State, alike, joined, sort_configurations
 from fixture_design.assembly.spatial import SpatialGeometry
@@ -207,7 +208,9 @@ def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.nda
     edges are nearly along each other, what touches is not known well.
     """
     way, kept = geometry.between(tight.q, loose.q), _padded(loose.touching)
-    good = _begins(geometry, tight, loose, way, kept)
+    good = np.ones(len(tight), dtype=bool)
+    if isinstance(geometry, RoundGeometry):
+        good = _begins(geometry, tight, loose, way, kept)
     for share in _LOOKED_AT:
         q, arrived = held(geometry, geometry.moved(tight.q, share * way), kept)
         found = sort_configurations(geometry, q)
@@ -218,8 +221,8 @@ def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.nda
 def _begins(geometry: ContactGeometry, tight: Sorted, loose: Sorted, way: np.ndarray, kept: np.ndarray) -> np.ndarray:
     """Whether motions begin along their way, with the contacts that they hold and others that were there.
 
-    Not all that they leave need be apart so near. Where tolerances alone make two states neighbours, the contacts are
-    held only far aside, or something else touches first.
+    Not all that they leave need be apart so near. Where a circle is nearly along a rim, tolerances alone may make two
+    states neighbours: then contacts are held only far aside, or something else touches first.
     """
     good = np.ones(len(tight), dtype=bool)
     for share in _BEGINNING:
