@@ -6,14 +6,19 @@ only.
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from fixture_design.assembly import Assembly, ContactStateGraph, geometry_of, state_graph
+from fixture_design.assembly import Assembly, ContactStateGraph, geometry_of, rotations, state_graph
+from fixture_design.assembly.bordering import look_nearer
+from fixture_design.assembly.known_states import KnownStates
+from fixture_design.assembly.sorting import sort_configurations, states_of
+from fixture_design.assembly.symmetry import Symmetries
 from tests.assembly.dense_motions import borders
 from tests.assembly.followed import followed
 from tests.assembly.rounds import peg, plate
 from tests.assembly.test_not_convex import spatial
-from tests.assembly.test_round_peg import HOLE, PLAIN, REGION, THICK, graph_of, states, transitions
+from tests.assembly.test_round_peg import HOLE, REGION, THICK, graph_of, states, transitions
 from tests.geometry.parts import SHARED
 
 FOLDER = SHARED / "IsaacGymEnvs" / "assets" / "factory" / "mesh" / "factory_insertion"
@@ -88,15 +93,36 @@ def test_another_resolution(tmp_path: Path) -> None:
     assert transitions(fine) == transitions(coarse)
 
 
-def test_upright_it_is_the_same_by_two_seeds(tmp_path: Path) -> None:
-    """A peg that does not turn: over the rim and on the plate, at the wall, at both, or in the air."""
-    shape, around = peg(tmp_path / "peg.obj", PLAIN, 24), plate(tmp_path / "plate.obj", 4, THICK, HOLE, 24)
-    assembly = spatial(shape, around, **(REGION | {"rotation": "fixed"}))
-    first, second = (state_graph(assembly, samples=4, seed=seed) for seed in (0, 1))
-    assert states(first) == states(second)
-    on, wall = ("circle 1 - facet 4", "disk 1 - facet 4"), ("circle 1 - cylinder 2", "cylinder 1 - circle 3")
-    over = tuple(sorted(("circle 1 - circle 3", "circle 1 - circle 3 again", *on)))
-    corner = tuple(sorted((*wall, *on)))
-    assert transitions(first) == transitions(second) == {(over, ()), (wall, ()), (corner, ()), (corner, wall)}
-    found = borders(first, geometry_of(assembly), seed=0, count=300)
-    assert found == transitions(first)
+def test_what_a_circle_on_a_rim_borders_on(tmp_path: Path) -> None:
+    """A bevelled peg with the upper end of its bevel on the rim at (1, 0, 0): sideways, leaning away, upright."""
+    bevelled = peg(tmp_path / "peg.obj", [(0.0, 0.7), (0.2, 0.9), (3.0, 0.9)], 24)
+    geometry = geometry_of(spatial(bevelled, plate(tmp_path / "plate.obj", 4, THICK, HOLE, 24), **REGION))
+    wall, cone, cylinder = "circle 2 - cylinder 2", "cone 1 - circle 4", "cylinder 1 - circle 4"
+    sideways = tuple(sorted(("circle 2 - circle 4", wall, cylinder)))
+    leaning, upright = (wall, cone, cylinder), tuple(sorted((wall, "circle 2 - facet 4", cone, cylinder)))
+    known = KnownStates(geometry, Symmetries.none(len(geometry.names)), 4)
+    a = 0.03
+    at_rim, down, up = np.array([1.0, 0, 0]), np.array([1.0, 0, -0.05]), 0.1
+    configurations = {
+        sideways: _with_circle(at_rim, [a, 0, 0]),
+        leaning: _with_circle(at_rim, [0, -a, 0]),
+        upright: _with_circle(at_rim, [0, 0, 0]),
+        (wall,): _with_circle(down, [0, -a, 0]),
+        (cylinder,): _with_circle(at_rim, [0, a, 0], up),
+    }
+    for state, q in configurations.items():
+        found = sort_configurations(geometry, q[None])
+        assert found.clear.all()
+        assert states_of(geometry, found.touching) == [state]
+        known.add(found)
+    look_nearer(known)
+    expected = {(sideways, (wall,)), (sideways, (cylinder,)), (leaning, (wall,))}
+    expected |= {(upright, (wall,)), (upright, (cylinder,)), (upright, leaning)}
+    assert set(known.transitions) == expected
+
+
+def _with_circle(point: np.ndarray, turn: list, above: float = 0.0) -> np.ndarray:
+    """The peg turned, with the point of circle 2 that is farthest along x, or of the cylinder above it, at a point."""
+    quaternion = rotations.from_vectors(np.array([turn], dtype=float))
+    own = np.array([0.9, 0.0, 0.2 + above])
+    return np.concatenate([point - rotations.matrices(quaternion)[0] @ own, quaternion[0]])
