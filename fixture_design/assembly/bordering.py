@@ -33,6 +33,9 @@ _ASIDE = (0.01, 0.003, 0.001)
 #: Random directions aside, besides those along axes, and the seed of their numbers: they are the same for every search.
 _DIRECTIONS, _SEED = 12, 11
 
+#: Turns beside shifts, as lengths at the radius [-]: long bodies also turn about what is near to their contacts.
+_TURNS = (1.0, 5.0)
+
 #: What is left of a unit normal beside others that makes it an axis of its own [-].
 _INDEPENDENT = 0.1
 
@@ -93,16 +96,27 @@ def _ways(known: KnownStates, begins: Sorted, rng: np.random.Generator) -> np.nd
     """Displacements of each configuration, (n k, d): along the axes of its contacts, by two of them, and others."""
     geometry = known.geometry
     drawn = rng.normal(size=(_DIRECTIONS, geometry.dimension))
-    single = np.eye(geometry.dimension)
-    first, second = np.triu_indices(geometry.dimension, 1)
-    double = np.vstack([single[first] + single[second], single[first] - single[second]]) * np.sqrt(0.5)
-    special = np.vstack([single, double])
+    special = _by_two(np.eye(geometry.dimension), geometry)
     found = []
     for frame in _frames(geometry, begins):
         directions = np.vstack([special @ frame, -special @ frame, drawn / np.linalg.norm(drawn, axis=1)[:, None]])
         lengths = np.array(_ASIDE)[:, None, None] * geometry.radius
         found.append(np.where(geometry.free, lengths * directions, 0.0).reshape(-1, geometry.dimension))
     return np.concatenate(found) / weights(geometry)
+
+
+def _by_two(axes: np.ndarray, geometry: ContactGeometry) -> np.ndarray:
+    """The axes, and sums and differences of any two; turns beside shifts by several shares."""
+    first, second = np.triu_indices(len(axes), 1)
+    turning = np.zeros(len(axes), dtype=bool)
+    turning[geometry.turns] = True
+    rows = [axes]
+    for share in _TURNS:
+        chosen = (turning[first] != turning[second]) if share != 1.0 else slice(None)
+        one, two = axes[first[chosen]], share * axes[second[chosen]]
+        rows += [one + two, one - two]
+    found = np.vstack(rows)
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
 
 
 def _frames(geometry: ContactGeometry, begins: Sorted) -> Iterator[np.ndarray]:
