@@ -85,7 +85,7 @@ def test_random_motions_show_no_other_transition(graph: ContactStateGraph) -> No
 
 @pytest.mark.slow
 def test_another_resolution(tmp_path: Path) -> None:
-    """A bevelled peg at two resolutions of its mesh and the plate's, and by two seeds."""
+    """A bevelled peg at two resolutions of its mesh and the plate's."""
     bevelled, region = [(0.0, 0.7), (0.2, 0.9), (3.0, 0.9)], {"z": [-0.5, 0.3], "rotation": 0.2}
     coarse = graph_of(tmp_path, bevelled, 24, **region)
     fine = graph_of(tmp_path, bevelled, 96, **region)
