@@ -17,6 +17,7 @@ from fixture_design.assembly.following import follow, held
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.point_motions import point_motions
+from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.assembly.sampling import onto
 from fixture_design.assembly.sorting import Sorted, State, alike, joined, sort_configurations
 from fixture_design.assembly.spatial import SpatialGeometry
@@ -34,6 +35,9 @@ _TOGETHER = 256
 
 #: Where straight motions are looked at [-].
 _LOOKED_AT = (0.03, 0.1, 0.3, 0.6, 1.0)
+
+#: Where it is looked at whether they begin as they go on, and how far aside they may be there, relative to the way [-].
+_BEGINNING, _BESIDE = (0.003, 0.01), 0.25
 
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
@@ -118,7 +122,7 @@ def _loosened(known: KnownStates, start: Sorted) -> Sorted:
         return start[rows]
     followed = follow(geometry, start.q[rows], displacements, kept)
     rows = rows[followed.rows]
-    _connect(known, start[rows], followed.ends)
+    connect(known, start[rows], followed.ends)
     return followed.ends
 
 
@@ -132,7 +136,7 @@ def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sort
     wished = np.concatenate([np.broadcast_to(directions, (len(start), *directions.shape)), drawn], axis=1)
     stopped = trace(geometry, start[rows], _padded(start.touching)[rows], wished.reshape(len(rows), -1))
     before = sort_configurations(geometry, stopped.before)
-    _connect(known, stopped.ends, before)
+    connect(known, stopped.ends, before)
     return stopped.ends
 
 
@@ -189,7 +193,7 @@ def _padded(touching: np.ndarray) -> np.ndarray:
     return np.where(np.take_along_axis(touching, order, axis=1), order, -1)
 
 
-def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
+def connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
     """Transitions of which the straight motion, contacts held, stays in the looser state."""
     if not len(tight):
         return
@@ -205,8 +209,28 @@ def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.nda
     """
     way, kept = geometry.between(tight.q, loose.q), _padded(loose.touching)
     good = np.ones(len(tight), dtype=bool)
+    if isinstance(geometry, RoundGeometry):
+        good = _begins(geometry, tight, loose, way, kept)
     for share in _LOOKED_AT:
         q, arrived = held(geometry, geometry.moved(tight.q, share * way), kept)
         found = sort_configurations(geometry, q)
         good &= arrived & found.admissible & (found.touching == loose.touching).all(axis=1)
+    return good
+
+
+def _begins(geometry: ContactGeometry, tight: Sorted, loose: Sorted, way: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    """Whether motions begin along their way, with the contacts that they hold and others that were there.
+
+    Not all that they leave need be apart so near. Where a circle is nearly along a rim, tolerances alone may make two
+    states neighbours: then contacts are held only far aside, or something else touches first.
+    """
+    good = np.ones(len(tight), dtype=bool)
+    for share in _BEGINNING:
+        aim = geometry.moved(tight.q, share * way)
+        q, arrived = held(geometry, aim, kept)
+        aside = np.linalg.norm(geometry.between(aim, q) * weights(geometry), axis=1)
+        found = sort_configurations(geometry, q)
+        among = (found.touching | ~loose.touching).all(axis=1) & (tight.touching | ~found.touching).all(axis=1)
+        near = aside <= _BESIDE * share * np.linalg.norm(way * weights(geometry), axis=1)
+        good &= arrived & found.admissible & among & near
     return good

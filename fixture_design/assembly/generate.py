@@ -8,11 +8,13 @@ from contextlib import suppress
 import numpy as np
 
 from fixture_design.assembly.assembly import Assembly
+from fixture_design.assembly.bordering import look_nearer
 from fixture_design.assembly.completion import complete, loosen
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.graph import ContactState, ContactStateGraph, StateTransition
 from fixture_design.assembly.known_states import KnownStates
+from fixture_design.assembly.round_space import RoundGeometry
 from fixture_design.assembly.sampling import onto, sample
 from fixture_design.assembly.sorting import Sorted, State, joined
 from fixture_design.assembly.symmetry import Symmetries
@@ -85,6 +87,8 @@ def _search(
     more, beside = known.add(loosen(known, fresh))
     if new or beside:
         complete(known, joined([fresh, more]), rng, progress)
+    if isinstance(known.geometry, RoundGeometry):
+        look_nearer(known)
 
 
 def _more(known: KnownStates, rng: np.random.Generator) -> Sorted:

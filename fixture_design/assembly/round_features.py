@@ -33,6 +33,7 @@ class RoundPair:
         flat: of a disk on a plane.
         block: number of the fixed body.
         joins: of a circle across a rim the pairs that it continues: where these end on the rim, both touch.
+        rim_axis: of a circle across a rim the rim's axis; None for others.
     """
 
     names: tuple[str, ...]
@@ -42,6 +43,7 @@ class RoundPair:
     fixed_point: np.ndarray | None = None
     flat: Flat | None = None
     joins: tuple[str, ...] = ()
+    rim_axis: np.ndarray | None = None
 
 
 def pairs_of(moving: TurnedBody, fixed: tuple[DrilledBlock, ...], region: Region, reach: float) -> list[RoundPair]:
@@ -192,8 +194,8 @@ def _with_rim(
 
         joins = [f"{names.circles[k]} - {other}" for other in beside]
         joins += [f"{surface} - {names.rims[which]}" for surface in names.surfaces[max(k - 1, 0) : k + 1]]
-        pair = RoundPair((name, name + AGAIN), cross, float(moving.reaches[k]), which[0], joins=tuple(joins))
-        pairs.append(pair)
+        reach = float(moving.reaches[k])
+        pairs.append(RoundPair((name, name + AGAIN), cross, reach, which[0], joins=tuple(joins), rim_axis=rim.axis[0]))
     sides = np.stack([np.minimum(boxes[:-1, 0], boxes[1:, 0]), np.maximum(boxes[:-1, 1], boxes[1:, 1])], axis=1)
     for k in np.flatnonzero(meeting(sides, corners)).tolist():
         name = f"{names.surfaces[k]} - {names.rims[which]}"

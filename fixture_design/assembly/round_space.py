@@ -10,11 +10,12 @@ import numpy as np
 from fixture_design.arrays import Mask
 from fixture_design.assembly import rotations
 from fixture_design.assembly.assembly import Assembly, Region
-from fixture_design.assembly.circles import crossed
+from fixture_design.assembly.circles import ALONG, crossed, lengths_of
 from fixture_design.assembly.contact_rows import ContactRows
 from fixture_design.assembly.drilled_block import DrilledBlock
 from fixture_design.assembly.pair_equations import PairEquations
 from fixture_design.assembly.placement import Placement
+from fixture_design.assembly.round_doubts import doubted
 from fixture_design.assembly.round_features import RoundPair, pairs_of
 from fixture_design.assembly.round_overlap import overlap_with
 from fixture_design.assembly.round_planes import Flat
@@ -98,14 +99,14 @@ class RoundGeometry(SpatialMotions):
 
     def distances(self, q: np.ndarray) -> np.ndarray:
         place = self.place(q)
-        columns = []
-        for touch, pair in zip(self._touches(place), self._flats, strict=True):
+        touches, columns = self._touches(place), []
+        for touch, pair in zip(touches, self._flats, strict=True):
             parts = [touch.gap, np.maximum(touch.beyond, 0.0)]
             if pair is not None and pair.flat is not None:
                 tilts, _ = pair.flat.tilts(place)
                 parts += [self._arm(pair) * tilts[:, 0], self._arm(pair) * tilts[:, 1]]
             columns.append(np.where(touch.exists, np.linalg.norm(parts, axis=0), self.size))
-        return np.column_stack(columns)
+        return doubted(self.pairs, place, touches, np.column_stack(columns), self.size)
 
     def _arm(self, pair: RoundPair) -> float:
         """What makes lengths of tilts: the disk's radius."""
@@ -154,12 +155,18 @@ class RoundGeometry(SpatialMotions):
 
     def _join(self, chosen: np.ndarray, ends: dict, values: np.ndarray, gradients: np.ndarray) -> None:
         for pair, number in zip(self.pairs, self._firsts, strict=True):
+            replaced = np.zeros(chosen.shape, dtype=bool)
             for name in pair.joins:
                 if name in ends:
                     rows, beyond, slide = ends[name]
                     at, column = np.nonzero((chosen[rows] == number) | (chosen[rows] == number + 1))
-                    values[rows[at], column], gradients[rows[at], column] = 0.0, 0.0
-                    values[rows[at], column, 0], gradients[rows[at], column, 0] = beyond[at], slide[at]
+                    here = rows[at], column
+                    # two ends at once are two equations
+                    row = np.where(replaced[here], 2, 0)
+                    fresh = rows[at][row == 0], column[row == 0]
+                    values[fresh], gradients[fresh] = 0.0, 0.0
+                    values[*here, row], gradients[*here, row] = beyond[at], slide[at]
+                    replaced[here] = True
 
     @property
     def ending(self) -> Mask:
@@ -225,6 +232,26 @@ class RoundGeometry(SpatialMotions):
                 ends.append(bool(at_end[number]))
         whole = tuple(flat is not None for flat in flats)
         return ContactRows(np.array(rows), np.array(ends), tuple(owned[k] for k in pairs.tolist()), whole)
+
+    def aligned(self, q: np.ndarray) -> np.ndarray:
+        """Turned by the least angles that put the moving body's axis along that of a hole, where the region allows.
+
+        A circle in the plane of a rim is the border between leaning towards where they touch, and away from it. One
+        configuration of each is enough: the others are the same turned about these axes.
+        """
+        found = [q[:0]]
+        if self.region.turning == "fixed" or not len(q):
+            return q[:0]
+        q = q[:1]
+        place = self.place(q)
+        for hole in (hole for block in self.fixed for hole in block.holes):
+            for axis in (hole.axis, -hole.axis):
+                turn = crossed(place.axis, np.broadcast_to(axis, place.axis.shape))
+                sine, cosine = lengths_of(turn), place.axis @ axis
+                angle = np.arctan2(sine, cosine) / np.where(sine < ALONG, 1.0, sine)
+                turned = self.moved(q, np.concatenate([0 * turn, angle[:, None] * turn], axis=1))
+                found.append(turned[self.inside(turned)])
+        return np.concatenate(found)
 
     def coincident(self, q: np.ndarray, distance: float) -> np.ndarray:
         """Where two pairs touch in one point: a circle on a rim."""
