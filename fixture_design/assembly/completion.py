@@ -13,12 +13,12 @@ import numpy as np
 
 from fixture_design.arrays import Indices
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
-from fixture_design.assembly.following import follow, held
+from fixture_design.assembly.following import follow, held, propose
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.point_motions import point_motions
 from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, alike, joined, sort_configurations
+from fixture_design.assembly.sorting import Sorted, State, alike, joined, numbered, sort_configurations
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
@@ -97,29 +97,26 @@ def loosen(known: KnownStates, start: Sorted) -> Sorted:
 
 def _one_of_each(touching: np.ndarray) -> Iterator[Indices]:
     """The first of each state, the second of each, and so on."""
-    if not len(touching):
-        return
-    _, places = alike(touching)
-    order = np.argsort(places, kind="stable")
-    firsts = np.searchsorted(places[order], places[order])
-    number = np.arange(len(order)) - firsts
-    for k in range(int(number.max()) + 1):
-        yield np.sort(order[number == k])
+    number = numbered(alike(touching)[1])
+    for k in range(int(number.max(initial=-1)) + 1):
+        yield np.flatnonzero(number == k)
 
 
 def _loosened(known: KnownStates, start: Sorted) -> Sorted:
     geometry = known.geometry
     rows, displacements, kept = _modes(geometry, start)
-    touching = np.zeros((len(rows), len(geometry.names) + 1), dtype=bool)
-    np.put_along_axis(touching, kept, True, axis=1)
-    fresh = ~known.linked(start.touching[rows], touching[:, :-1])
-    rows, displacements, kept = rows[fresh], displacements[fresh], kept[fresh]
-    if not rows.size:
-        return start[rows]
-    followed = follow(geometry, start.q[rows], displacements, kept)
-    rows = rows[followed.rows]
-    _connect(known, start[rows], followed.ends)
-    return followed.ends
+    fresh = np.flatnonzero(~known.linked(start.touching[rows], kept))
+    proposed = propose(geometry, start[rows[fresh]], displacements[fresh], _padded(kept[fresh]))
+    ends, most = [start[np.zeros(0, dtype=int)]], 1
+    # many motions lead from one state to one other: the first that does is enough
+    while len(proposed := proposed[~known.linked(proposed.start.touching, proposed.decisive.touching)]):
+        number = numbered(known.orbits(proposed.start.touching, proposed.decisive.touching))
+        some = proposed[number < most]
+        followed = follow(geometry, some)
+        _connect(known, some.start[followed.rows], followed.ends)
+        ends.append(followed.ends)
+        proposed, most = proposed[number >= most], 2 * most
+    return joined(ends)
 
 
 def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sorted:
@@ -152,16 +149,16 @@ def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
     return joined(found)
 
 
-def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Which configuration, its motion (angles times the radius), and the pairs it keeps, -1 for none."""
+def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[Indices, np.ndarray, np.ndarray]:
+    """Which configuration, its motion (angles times the radius), and whether it keeps each pair, shape (n, P)."""
     everything = np.arange(len(geometry.names))[None]
     vectors = geometry.equations(start.q, everything).face_vectors / weights(geometry)
     ends = geometry.at_apices(start.q, TOUCHING * geometry.size)
     turns = np.zeros(geometry.dimension, dtype=bool)
     turns[geometry.turns] = True
-    rows: list[int] = []
-    displacements: list[np.ndarray] = []
-    kept: list[np.ndarray] = []
+    rows = [np.zeros(0, dtype=int)]
+    displacements = [np.zeros((0, geometry.dimension))]
+    kept = [start.touching[:0]]
     for k, touching in enumerate(start.touching):
         pairs = np.flatnonzero(touching)
         if not pairs.size:
@@ -171,22 +168,22 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         if isinstance(geometry, SpatialGeometry):
             points = point_motions(geometry, start.q[k], pairs[at_end], vectors[k, pairs[at_end], :3])
         found = geometry.rows(start.q[k], pairs, vectors[k, pairs], at_end)
-        for mode in contact_modes(found.vectors, found.at_end, geometry.free, turns, points):
-            rows.append(k)
-            displacements.append(mode.displacement)
-            kept.append(pairs[found.pairs_kept(mode.kept)])
-    width = max((len(pairs) for pairs in kept), default=1)
-    padded = np.full((len(kept), max(width, 1)), -1)
-    for row, pairs in zip(padded, kept, strict=True):
-        row[: len(pairs)] = pairs
-    return np.array(rows, dtype=int), np.array(displacements).reshape(len(rows), geometry.dimension), padded
+        modes = contact_modes(found.vectors, found.at_end, geometry.free, turns, points)
+        if modes:
+            rows.append(np.full(len(modes), k))
+            displacements.append(np.array([mode.displacement for mode in modes]))
+            kept.append(np.zeros((len(modes), len(touching)), dtype=bool))
+            kept[-1][:, pairs] = found.pairs_kept(np.array([mode.kept for mode in modes]))
+    return np.concatenate(rows), np.concatenate(displacements), np.concatenate(kept)
 
 
 def _padded(touching: np.ndarray) -> np.ndarray:
     """The pairs that touch, one configuration a row, -1 for none."""
-    width = max(int(touching.sum(axis=1).max(initial=0)), 1)
-    order = np.argsort(~touching, axis=1, kind="stable")[:, :width]
-    return np.where(np.take_along_axis(touching, order, axis=1), order, -1)
+    rows, pairs = np.nonzero(touching)
+    counts = touching.sum(axis=1)
+    found = np.full((len(touching), max(int(counts.max(initial=0)), 1)), -1)
+    found[rows, np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)] = pairs
+    return found
 
 
 def _connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:

@@ -89,9 +89,18 @@ class KnownStates:
 
     def linked(self, tight: np.ndarray, loose: np.ndarray) -> Mask:
         """Whether transitions between patterns (n, P), or images of them, are known."""
+        first, places = alike(np.concatenate([tight, loose], axis=1))
+        keys = _keys(*self._images(tight[first], loose[first]))
+        return np.array([key in self._linked for key in keys], dtype=bool)[places]
+
+    def orbits(self, tight: np.ndarray, loose: np.ndarray) -> Indices:
+        """Numbers of the orbits that transitions between patterns (n, P) are in."""
+        first, places = alike(np.concatenate([tight, loose], axis=1))
+        return alike(np.concatenate(self._images(tight[first], loose[first]), axis=1))[1][places]
+
+    def _images(self, tight: np.ndarray, loose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         elements = self.symmetries.to_representatives(tight, loose)
-        images = (self.symmetries.permuted(elements, touching) for touching in (tight, loose))
-        return np.array([key in self._linked for key in _keys(*images)], dtype=bool)
+        return self.symmetries.permuted(elements, tight), self.symmetries.permuted(elements, loose)
 
     def representatives(self, found: Sorted) -> Sorted:
         """The configurations' images in the representatives of their states' orbits."""

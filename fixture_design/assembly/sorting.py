@@ -87,3 +87,12 @@ def alike(touching: Bool[np.ndarray, "n P"]) -> tuple[Indices, Indices]:
     keys = packed.view(f"V{packed.shape[1]}").ravel() if packed.size else np.zeros(len(packed))
     _, first, places = np.unique(keys, return_index=True, return_inverse=True)
     return first, places.ravel()
+
+
+def numbered(places: Indices) -> Indices:
+    """Of each row, how many before it have the same number."""
+    order = np.argsort(places, kind="stable")
+    firsts = np.searchsorted(places[order], places[order])
+    found = np.empty(len(places), dtype=int)
+    found[order] = np.arange(len(order)) - firsts
+    return found
