@@ -72,3 +72,13 @@ def onto(geometry: ContactGeometry, starts: np.ndarray, sets: np.ndarray, *, tur
         starts = starts[left <= SOLVED * geometry.size]
     found = sort_configurations(geometry, starts)
     return found[found.clear]
+
+
+def onto_all(geometry: ContactGeometry, starts: np.ndarray, touching: np.ndarray) -> Sorted:
+    """As `onto`, the sets of equations as masks (n, P): those with as many together, none with more than it has."""
+    counts = touching.sum(axis=1)
+    found = [sort_configurations(geometry, starts[:0])]
+    for count in np.unique(counts).tolist():
+        rows = np.flatnonzero(counts == count)
+        found.append(onto(geometry, starts[rows], np.nonzero(touching[rows])[1].reshape(len(rows), count)))
+    return joined(found)
