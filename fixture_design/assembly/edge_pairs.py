@@ -4,21 +4,40 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
 from fixture_design.arrays import Indices, cross_products
-from fixture_design.assembly.triples import cross, dot, rate, turned
-from fixture_design.tolerances import APART, SUM_ROUNDING
+from fixture_design.assembly.triples import components_first, cross, dot, rate, turned
+from fixture_design.tolerances import APART, ROUND_OFF, SUM_ROUNDING
 
 Space = Float[np.ndarray, "_ 3"]
 
 #: Sine of the angle below which two edges are parallel and have no common normal [-].
 PARALLEL = 1e-6
 
-#: `APART` by this is neither apart nor touching [-].
-_BETWEEN = 30.0
+#: What rounding of a pose leaves of the place of a point, relative to its distance from there [-].
+_POSE_ROUNDING = 8 * ROUND_OFF
+
+
+class _TwoLines(NamedTuple):
+    """Two edges at n poses, vectors (3, n): unit t along the moving and s along the fixed one.
+
+    Attributes:
+        arm: to the moving edge's first end.  away: from the fixed edge's first end to it.  common: t X s.
+        sine: its length.  along: how far the nearest points are from the first ends.  lengths: of the edges.
+    """
+
+    arm: np.ndarray
+    t: np.ndarray
+    s: np.ndarray
+    away: np.ndarray
+    common: np.ndarray
+    sine: np.ndarray
+    along: tuple[np.ndarray, np.ndarray]
+    lengths: tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +80,27 @@ class EdgePairs:
         here = (cosine * along_s - along_t) / squared, (along_s - cosine * along_t) / squared
         over = [a - np.clip(a, 0.0, most) for a, most in zip(here, (lengths[0][:, None], lengths[1]), strict=True)]
         found = np.sqrt(triple**2 / squared + over[0] ** 2 + over[1] ** 2)
-        # where nearly parallel lines cross is known badly: what this says does not touch may do so
-        doubtful = found <= SUM_ROUNDING * (lengths[0][:, None] + lengths[1]) / squared
-        unclear = APART / _BETWEEN * float(np.abs(self.their_edges).max())
-        found = np.where(doubtful & (found > unclear), unclear, found)
-        return np.where(parallel, lengths[0][:, None] + lengths[1], found).reshape(len(R), len(self.mine))
+        both = lengths[0][:, None] + lengths[1]
+        found = np.where(parallel, both, found).reshape(len(R), len(self.mine))
+        # these products tell nearly parallel edges badly: what may be near is looked at again
+        near = found <= (APART * self._size + SUM_ROUNDING * both / squared).reshape(len(R), len(self.mine))
+        rows, pairs = np.nonzero(near & ~parallel.reshape(len(R), len(self.mine)))
+        found[rows, pairs] = self._near(R, position, rows, pairs)
+        return found
+
+    def _near(self, R: np.ndarray, position: np.ndarray, rows: Indices, pairs: Indices) -> np.ndarray:
+        """H of some pairs at some poses, shape (k,) [m]."""
+        lines = self._seen(components_first(R[rows]), components_first(position[rows]), pairs)
+        gap = dot(lines.common, lines.away) / lines.sine
+        over = [a - np.clip(a, 0.0, most) for a, most in zip(lines.along, lines.lengths, strict=True)]
+        found = np.sqrt(gap**2 + over[0] ** 2 + over[1] ** 2)
+        # no distance is known better than that: where it is too much, the pair neither touches nor is apart
+        hidden = _POSE_ROUNDING * (lines.lengths[0] + lines.lengths[1]) / lines.sine
+        return np.maximum(found, hidden)
+
+    @cached_property
+    def _size(self) -> float:
+        return float(np.abs(self.their_edges).max())
 
     def equations(
         self, R: np.ndarray, position: np.ndarray, chosen: Indices, *, ends: bool
@@ -78,6 +113,21 @@ class EdgePairs:
         Args:
             R: shape (3, 3, n).  position: shape (3, n) [m].  chosen: one pair each, shape (n,).
         """
+        lines = self._seen(R, position, chosen)
+        parallel, outward = lines.sine < PARALLEL, self.their_outward.T[:, chosen % len(self.their_edges)]
+        side = np.where(dot(lines.common, outward) < 0, -1.0, 1.0)
+        normal = lines.common * (side / np.where(parallel, 1.0, lines.sine))
+        values = [np.where(parallel, lines.lengths[0] + lines.lengths[1], dot(normal, lines.away))]
+        rows = [rate(normal, lines.arm + lines.t * lines.along[0])]
+        if ends:
+            squared = np.where(parallel, 1.0, lines.sine**2)
+            for a, length, other in zip(lines.along, lines.lengths, (lines.s, lines.t), strict=True):
+                over = np.where(parallel, 0.0, a - np.clip(a, 0.0, length))
+                values.append(over)
+                rows.append(np.where(over != 0, rate(cross(lines.common, other) / squared, lines.arm), 0.0))
+        return np.stack(values), np.stack(rows)
+
+    def _seen(self, R: np.ndarray, position: np.ndarray, chosen: Indices) -> _TwoLines:
         my, their = np.divmod(chosen, len(self.their_edges))
         (begin, t, my_length), (start, s, their_length) = (
             (x[:, rows], unit[:, rows], length[rows])
@@ -86,21 +136,10 @@ class EdgePairs:
         arm, t = turned(R, begin), turned(R, t)
         away, common = arm + position - start, cross(t, s)
         sine = np.sqrt(dot(common, common))
-        parallel = sine < PARALLEL
-        side = np.where(dot(common, self.their_outward.T[:, their]) < 0, -1.0, 1.0)
-        normal = common * (side / np.where(parallel, 1.0, sine))
-        cosine, squared = dot(t, s), np.where(parallel, 1.0, sine**2)
-        along_s, along_t = dot(s, away), dot(t, away)
-        along = (cosine * along_s - along_t) / squared, (along_s - cosine * along_t) / squared
-        values = [np.where(parallel, my_length + their_length, dot(normal, away))]
-        rows = [rate(normal, arm + t * along[0])]
-        if ends:
-            slopes = (cosine * s - t) / squared, (s - cosine * t) / squared
-            for a, length, slope in zip(along, (my_length, their_length), slopes, strict=True):
-                over = np.where(parallel, 0.0, a - np.clip(a, 0.0, length))
-                values.append(over)
-                rows.append(np.where(over != 0, rate(slope, arm), 0.0))
-        return np.stack(values), np.stack(rows)
+        # by cross products: 1 - cos^2 and its like lose twice as many digits where lines are nearly parallel
+        squared = np.where(sine < PARALLEL, 1.0, sine**2)
+        along = -dot(cross(away, s), common) / squared, -dot(cross(away, t), common) / squared
+        return _TwoLines(arm, t, s, away, common, sine, along, (my_length, their_length))
 
     @cached_property
     def _lines(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:

@@ -11,6 +11,7 @@ from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.sorting import Sorted, State, alike, joined, state_of, states_of
 from fixture_design.assembly.symmetry import Symmetries
+from fixture_design.tolerances import SOLVED
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,7 @@ class KnownStates:
         A sample is kept while its state has too few, if it is away from those there are.
         """
         kept, before = [], len(self.samples)
-        found = self.representatives(found)
+        found = self.representatives(found[self._well_known(found)])
         for state, rows in self.by_state(found).items():
             fresh = self._away(state, found[rows])
             if len(fresh):
@@ -109,6 +110,10 @@ class KnownStates:
         first, places = alike(found.touching)
         return self.symmetries.of(self.symmetries.to_representatives(found.touching[first])[places], found)
 
+    def _well_known(self, found: Sorted) -> Mask:
+        """Which configurations still touch as well as they must after rounding, as that of their images."""
+        return np.where(found.touching, found.distances, 0.0).max(axis=1, initial=0.0) <= _WELL * self.geometry.size
+
     def _away(self, state: State, found: Sorted) -> Sorted:
         """The configurations farthest from the samples and each other, as many as there is room for."""
         old = self.samples.get(state)
@@ -135,6 +140,9 @@ class KnownStates:
 def _keys(tight: np.ndarray, loose: np.ndarray) -> list[bytes]:
     return [row.tobytes() for row in np.packbits(np.concatenate([tight, loose], axis=1), axis=1)]
 
+
+#: What touches in a sample does so within this, relative to the size [-]: half of what it must.
+_WELL = SOLVED / 2
 
 #: Samples this near to each other, relative to the size, are one [-].
 _SAME = 1e-6

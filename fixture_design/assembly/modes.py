@@ -94,20 +94,20 @@ class _Modes:
             return
         rates = displacements @ self.rows.T
         patterns = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
-        moving = patterns.any(axis=1).tolist()
+        moving = np.any(patterns, axis=1)
         directions = np.round(displacements, 3)
         full = np.zeros((len(displacements), len(self.free)))
         full[:, self.free] = displacements
         packed = np.packbits(kept, axis=1)
-        for k, displacement in enumerate(full):
+        for k, (displacement, moves) in enumerate(zip(full, moving.tolist(), strict=True)):
             own = packed[k].tobytes()
             pattern, direction = patterns[k].tobytes(), directions[k].tobytes()
             # where contacts depend on each other, the first order does not tell all motions apart
-            doubtful = not moving[k] or self.dependent(kept[k], own)
+            doubtful = not moves or self.dependent(kept[k], own)
             if not self._new(pattern + own + (direction if doubtful else b""), displacement, kept[k]):
                 continue
             for fewer, key in self._dropped(kept[k], own):
-                doubtful = not moving[k] or self.dependent(fewer, key)
+                doubtful = not moves or self.dependent(fewer, key)
                 self._new(pattern + key + (direction if doubtful else b""), displacement, fewer)
 
     def _new(self, key: bytes, displacement: Vector, kept: Mask) -> bool:

@@ -10,7 +10,6 @@ from fixture_design.arrays import Indices
 from fixture_design.assembly.contact_geometry import ContactGeometry
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.sorting import State, names_of
-from fixture_design.assembly.symmetry import Symmetries
 
 
 @dataclass(frozen=True, eq=False)
