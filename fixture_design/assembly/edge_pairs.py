@@ -18,7 +18,7 @@ Space = Float[np.ndarray, "_ 3"]
 #: Sine of the angle below which two edges are parallel and have no common normal [-].
 PARALLEL = 1e-6
 
-#: What rounding of a pose leaves of the place of a point, relative to its distance from there [-].
+#: What rounding of a pose leaves of the place of a point, relative to the size [-].
 _POSE_ROUNDING = 8 * ROUND_OFF
 
 
@@ -95,7 +95,7 @@ class EdgePairs:
         over = [a - np.clip(a, 0.0, most) for a, most in zip(lines.along, lines.lengths, strict=True)]
         found = np.sqrt(gap**2 + over[0] ** 2 + over[1] ** 2)
         # no distance is known better than that: where it is too much, the pair neither touches nor is apart
-        hidden = _POSE_ROUNDING * (lines.lengths[0] + lines.lengths[1]) / lines.sine
+        hidden = _POSE_ROUNDING * np.maximum(lines.lengths[0] + lines.lengths[1], self._size) / lines.sine
         return np.maximum(found, hidden)
 
     @cached_property
