@@ -17,7 +17,7 @@ from fixture_design.assembly.following import follow, held, propose
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.point_motions import point_motions
-from fixture_design.assembly.sampling import onto
+from fixture_design.assembly.sampling import onto, onto_all
 from fixture_design.assembly.sorting import Sorted, State, alike, joined, numbered, sort_configurations
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.tracing import trace
@@ -55,7 +55,7 @@ def complete(
         kept = []
         for first in range(0, len(start), _TOGETHER):
             some = start[np.arange(first, min(first + _TOGETHER, len(start)))]
-            found = [loosen(known, some), tighten(known, some, rng), aim(known.geometry, some)]
+            found = [loosen(known, some), tighten(known, some, rng), aim(known.geometry, some), again(known, rng)]
             kept.append(known.add(joined(found))[0])
             left = len(start) - first - len(some)
             more = f", {left} configurations to go on from" if left else ""
@@ -106,7 +106,8 @@ def _loosened(known: KnownStates, start: Sorted) -> Sorted:
     geometry = known.geometry
     rows, displacements, kept = _modes(geometry, start)
     fresh = np.flatnonzero(~known.linked(start.touching[rows], kept))
-    proposed = propose(geometry, start[rows[fresh]], displacements[fresh], _padded(kept[fresh]))
+    proposed, unclear = propose(geometry, start[rows[fresh]], displacements[fresh], _padded(kept[fresh]))
+    known.doubt(unclear)
     ends, most = [start[np.zeros(0, dtype=int)]], 1
     # many motions lead from one state to one other: the first that does is enough
     while len(proposed := proposed[~known.linked(proposed.start.touching, proposed.decisive.touching)]):
@@ -175,6 +176,23 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[Indices, np.ndarra
             kept.append(np.zeros((len(modes), len(touching)), dtype=bool))
             kept[-1][:, pairs] = found.pairs_kept(np.array([mode.kept for mode in modes]))
     return np.concatenate(rows), np.concatenate(displacements), np.concatenate(kept)
+
+
+def again(known: KnownStates, rng: np.random.Generator) -> Sorted:
+    """Clear configurations for states that so far only unclear ones told of: their equations, solved from beside these.
+
+    Beside a state in which edges are along each other lie others in which they nearly are, and farther away less so.
+    """
+    geometry = known.geometry
+    q, touching = known.doubts()
+    q, touching = np.repeat(q, _AGAIN, axis=0), np.repeat(touching & geometry.takes_part, _AGAIN, axis=0)
+    away = rng.normal(size=(len(q), geometry.dimension)) * geometry.radius / weights(geometry)
+    away *= rng.choice(_BESIDE, size=(len(q), 1))
+    return onto_all(geometry, geometry.moved(q, np.where(geometry.free, away, 0.0)), touching)
+
+
+#: Starts for each state that only unclear configurations tell of, and how far beside these, relative to the radius [-].
+_AGAIN, _BESIDE = 30, (0.01, 0.03, 0.1)
 
 
 def _padded(touching: np.ndarray) -> np.ndarray:

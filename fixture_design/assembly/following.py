@@ -69,15 +69,18 @@ class Followed:
     ends: Sorted
 
 
-def propose(geometry: ContactGeometry, start: Sorted, displacements: np.ndarray, kept: np.ndarray) -> Proposed:
+def propose(
+    geometry: ContactGeometry, start: Sorted, displacements: np.ndarray, kept: np.ndarray
+) -> tuple[Proposed, Sorted]:
     """The motions that tell a state at the last length that must agree; arguments as in `Proposed`.
 
-    Nearly all that fail do so there: they need not be looked at any further.
+    Nearly all that fail do so there: they need not be looked at any further. Where others are that do not say clearly
+    what touches, but may tell of a state, comes second.
     """
     longest = _longest(geometry, start, displacements)
     decisive = _moved(geometry, start.q, displacements, kept, _SHARES[_MUST_AGREE - 1] * longest)
-    lasting = np.flatnonzero(decisive.clear)
-    return Proposed(start, displacements, kept, longest, decisive)[lasting]
+    proposed = Proposed(start, displacements, kept, longest, decisive)
+    return proposed[np.flatnonzero(decisive.clear)], decisive[decisive.admissible & ~decisive.clear]
 
 
 def follow(geometry: ContactGeometry, proposed: Proposed) -> Followed:

@@ -43,6 +43,8 @@ class KnownStates:
     samples: dict[State, Sorted] = field(default_factory=dict)
     transitions: dict[tuple[State, State], Transition] = field(default_factory=dict)
     _linked: set[bytes] = field(default_factory=set)
+    _doubtful: dict[bytes, tuple[Configuration, Mask]] = field(default_factory=dict)
+    _told: set[bytes] = field(default_factory=set)
 
     def add(self, found: Sorted) -> tuple[Sorted, int]:
         """Takes clear configurations in; returns those that are kept as samples, and how many states are new.
@@ -102,6 +104,22 @@ class KnownStates:
     def _images(self, tight: np.ndarray, loose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         elements = self.symmetries.to_representatives(tight, loose)
         return self.symmetries.permuted(elements, tight), self.symmetries.permuted(elements, loose)
+
+    def doubt(self, found: Sorted) -> None:
+        """Takes in configurations that do not say clearly what touches, one of each state."""
+        first, _ = alike(found.touching)
+        found = self.representatives(found[first])
+        for q, touching in zip(found.q, found.touching, strict=True):
+            self._doubtful.setdefault(touching.tobytes(), (q, touching))
+
+    def doubts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Such configurations (n, c) and their patterns (n, P), of states that are not known; each is told once."""
+        known = {found.touching[0].tobytes() for found in self.samples.values()}
+        fresh = [both for key, both in self._doubtful.items() if key not in known and key not in self._told]
+        self._told.update(self._doubtful)
+        q, touching = (np.array([both[k] for both in fresh]) for k in range(2))
+        some = next(iter(self.samples.values()))
+        return q.reshape(-1, some.q.shape[1]), touching.reshape(-1, some.touching.shape[1]).astype(bool)
 
     def representatives(self, found: Sorted) -> Sorted:
         """The configurations' images in the representatives of their states' orbits."""

@@ -58,15 +58,16 @@ def _images_of_samples(known: KnownStates, own: Indices, elements: Indices) -> t
 def _transitions(known: KnownStates, keys: np.ndarray) -> tuple[Indices, Indices, np.ndarray, np.ndarray]:
     """The images of the transitions between states with these keys, shape (s,)."""
     geometry, symmetries = known.geometry, known.symmetries
-    patterns = _Patterns(geometry)
-    tight, loose = (patterns.of([pair[k] for pair in known.transitions]) for k in range(2))
+    tight, loose = (_patterns(geometry, [pair[k] for pair in known.transitions]) for k in range(2))
     own, elements = symmetries.orbits(tight, loose)
     ends = [_places(keys, symmetries.image_keys(touching)[own, elements]) for touching in (tight, loose)]
     order = np.lexsort(ends)
     order = order[(ends[0][order] >= 0) & (ends[1][order] >= 0)]
     own, elements = own[order], elements[order]
-    q = np.array([found.q for found in known.transitions.values()]).reshape(len(tight), -1)
-    away = np.array([found.displacement for found in known.transitions.values()]).reshape(len(tight), -1)
+    none = geometry.random(np.random.default_rng(0), 0)
+    q = np.concatenate([none, *(found.q[None] for found in known.transitions.values())])
+    still = np.zeros((0, geometry.dimension))
+    away = np.concatenate([still, *(found.displacement[None] for found in known.transitions.values())])
     return (
         ends[0][order], ends[1][order], symmetries.moved(elements, q[own]), symmetries.displaced(elements, away[own])
     )  # fmt: skip
@@ -80,15 +81,10 @@ def _places(keys: np.ndarray, wanted: np.ndarray) -> Indices:
     return np.where(np.append(keys, 0)[places] == wanted, places, -1)
 
 
-class _Patterns:
-    """The pairs of states by their names."""
-
-    def __init__(self, geometry: ContactGeometry) -> None:
-        self._places = {name: k for k, name in enumerate(geometry.names)}
-
-    def of(self, states: list[State]) -> np.ndarray:
-        """Shape (n, P)."""
-        found = np.zeros((len(states), len(self._places)), dtype=bool)
-        for row, state in zip(found, states, strict=True):
-            row[[self._places[name] for name in state]] = True
-        return found
+def _patterns(geometry: ContactGeometry, states: list[State]) -> np.ndarray:
+    """Which pairs touch in states, shape (n, P); pairs that take no part may have no name of their own."""
+    places = {geometry.names[k]: k for k in np.flatnonzero(geometry.takes_part).tolist()}
+    found = np.zeros((len(states), len(geometry.names)), dtype=bool)
+    for row, state in zip(found, states, strict=True):
+        row[[places[name] for name in state]] = True
+    return found

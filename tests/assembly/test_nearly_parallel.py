@@ -1,4 +1,4 @@
-"""Where nearly parallel edges cross is known badly: how well, against more digits, and that what is not known is said."""
+"""Where nearly parallel edges cross is known badly: how well, against more digits; what is not known is said."""
 
 import numpy as np
 import pytest

@@ -20,6 +20,7 @@ from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.polyhedron import Polyhedron, polyhedron_of
 from fixture_design.assembly.rims import ConvexRims, PolygonRims
 from fixture_design.assembly.separation import SeparatingAxes
+from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.errors import AssemblyError, UnsupportedError
 from fixture_design.io import assembly_from_data, write_graph
 from fixture_design.viewing import graph_picture, preview
@@ -35,7 +36,7 @@ L_SHAPE = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
 PLATE, HOLE = [[-4, -4], [4, -4], [4, 4], [-4, 4]], [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]]
 
 
-def spatial(moving: dict, fixed: dict, **region: object) -> Assembly:
+def spatial(moving: dict, fixed: dict | list, **region: object) -> Assembly:
     data = {"schema": "fixture_design/assembly/1", "space": "spatial", "moving": moving, "name": "test"}
     return assembly_from_data(data | {"fixed": fixed, "region": region}, "test.yaml")
 
@@ -258,6 +259,7 @@ def test_pieces_along_the_same_axes_are_looked_at_together(tmp_path: Path) -> No
     plate = prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE])
     turned = {"box": [1, 1, 1], "pose": {"xyz": [3, 0, 0.5], "rpy": [0, 0, 0.5]}}
     geometry = geometry_of(spatial({"box": [1, 1, 1]}, [plate, turned], x=[-1, 1], y=[-1, 1], z=[-1, 1]))
+    assert isinstance(geometry, SpatialGeometry)
     assert [len(axes.theirs) for axes in geometry.axes] == [4, 1]
     q = geometry.random(np.random.default_rng(0), 300)
     R = rotations.matrices(q[:, 3:])
