@@ -75,7 +75,7 @@ def _search(
     samples: int,
     progress: Callable[[str], None],
 ) -> None:
-    start = known.representatives(sample(known.geometry, rng))
+    start = known.representatives(sample(known.geometry, rng, known.symmetries))
     counts.update({state: len(rows) for state, rows in known.by_state(start).items()})
     fresh, _ = known.add(start)
     progress(f"{len(start)} of the random starts ended in {len(counts)} states")

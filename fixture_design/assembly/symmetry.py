@@ -107,6 +107,14 @@ class Symmetries:
         """Of patterns (n, P) the images by all elements, each as one random number: shape (n, g)."""
         return touching.astype(np.int64) @ self._keys.T
 
+    def first_of_sets(self, sets: np.ndarray) -> Indices:
+        """The first rows of which no other before is an image, of sets of pairs (s, k)."""
+        least = [
+            self._keys[:, sets[k : k + _SETS_TOGETHER]].sum(axis=-1).min(axis=0)
+            for k in range(0, len(sets), _SETS_TOGETHER)
+        ]
+        return np.sort(np.unique(np.concatenate(least), return_index=True)[1])
+
     def orbits(self, touching: np.ndarray, then: np.ndarray | None = None) -> tuple[Indices, Indices]:
         """Rows, and elements that make all different images of each pattern (n, P), or of two together, one for each.
 
@@ -127,3 +135,6 @@ class Symmetries:
 
 #: An odd number by which the second of two numbers counts.
 _BOTH = np.int64(0x5851F42D4C957F2D)
+
+#: Sets of pairs whose images are looked at together.
+_SETS_TOGETHER = 4096
