@@ -73,6 +73,7 @@ def test_a_search_by_other_sets_finds_nothing_new(graph: ContactStateGraph, geom
     assert len(seen) > 0.5 * len(known)
 
 
+@pytest.mark.timeout(1500)
 def test_at_any_rotation_samples_and_transitions_are_what_they_say(tmp_path: Path) -> None:
     """Some 40,000 states, of which seeds find all but one or two in a hundred; every sample says again what touches."""
     plate = prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE])
