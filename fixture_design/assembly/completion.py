@@ -13,13 +13,13 @@ import numpy as np
 
 from fixture_design.arrays import Indices
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
-from fixture_design.assembly.following import follow, held
+from fixture_design.assembly.following import follow, held, propose
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.modes import contact_modes
 from fixture_design.assembly.point_motions import point_motions
 from fixture_design.assembly.round_space import RoundGeometry
-from fixture_design.assembly.sampling import onto
-from fixture_design.assembly.sorting import Sorted, State, alike, joined, sort_configurations
+from fixture_design.assembly.sampling import onto, onto_all
+from fixture_design.assembly.sorting import Sorted, State, alike, joined, numbered, sort_configurations
 from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.assembly.tracing import trace
 from fixture_design.tolerances import APART, TOUCHING
@@ -37,7 +37,7 @@ _TOGETHER = 256
 _LOOKED_AT = (0.03, 0.1, 0.3, 0.6, 1.0)
 
 #: Where it is looked at whether they begin as they go on, and how far aside they may be there, relative to the way [-].
-_BEGINNING, _BESIDE = (0.003, 0.01), 0.25
+_BEGINNING, _OFF_COURSE = (0.003, 0.01), 0.25
 
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
@@ -59,7 +59,7 @@ def complete(
         kept = []
         for first in range(0, len(start), _TOGETHER):
             some = start[np.arange(first, min(first + _TOGETHER, len(start)))]
-            found = [loosen(known, some), tighten(known, some, rng), aim(known.geometry, some)]
+            found = [loosen(known, some), tighten(known, some, rng), aim(known.geometry, some), again(known, rng)]
             kept.append(known.add(joined(found))[0])
             left = len(start) - first - len(some)
             more = f", {left} configurations to go on from" if left else ""
@@ -101,29 +101,27 @@ def loosen(known: KnownStates, start: Sorted) -> Sorted:
 
 def _one_of_each(touching: np.ndarray) -> Iterator[Indices]:
     """The first of each state, the second of each, and so on."""
-    if not len(touching):
-        return
-    _, places = alike(touching)
-    order = np.argsort(places, kind="stable")
-    firsts = np.searchsorted(places[order], places[order])
-    number = np.arange(len(order)) - firsts
-    for k in range(int(number.max()) + 1):
-        yield np.sort(order[number == k])
+    number = numbered(alike(touching)[1])
+    for k in range(int(number.max(initial=-1)) + 1):
+        yield np.flatnonzero(number == k)
 
 
 def _loosened(known: KnownStates, start: Sorted) -> Sorted:
     geometry = known.geometry
     rows, displacements, kept = _modes(geometry, start)
-    touching = np.zeros((len(rows), len(geometry.names) + 1), dtype=bool)
-    np.put_along_axis(touching, kept, True, axis=1)
-    fresh = ~known.linked(start.touching[rows], touching[:, :-1])
-    rows, displacements, kept = rows[fresh], displacements[fresh], kept[fresh]
-    if not rows.size:
-        return start[rows]
-    followed = follow(geometry, start.q[rows], displacements, kept)
-    rows = rows[followed.rows]
-    connect(known, start[rows], followed.ends)
-    return followed.ends
+    fresh = np.flatnonzero(~known.linked(start.touching[rows], kept))
+    proposed, unclear = propose(geometry, start[rows[fresh]], displacements[fresh], _padded(kept[fresh]))
+    known.doubt(unclear)
+    ends, most = [start[np.zeros(0, dtype=int)]], 1
+    # many motions lead from one state to one other: the first that does is enough
+    while len(proposed := proposed[~known.linked(proposed.start.touching, proposed.decisive.touching)]):
+        number = numbered(known.orbits(proposed.start.touching, proposed.decisive.touching))
+        some = proposed[number < most]
+        followed = follow(geometry, some)
+        connect(known, some.start[followed.rows], followed.ends)
+        ends.append(followed.ends)
+        proposed, most = proposed[number >= most], 2 * most
+    return joined(ends)
 
 
 def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sorted:
@@ -156,16 +154,16 @@ def aim(geometry: ContactGeometry, start: Sorted) -> Sorted:
     return joined(found)
 
 
-def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Which configuration, its motion (angles times the radius), and the pairs it keeps, -1 for none."""
+def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[Indices, np.ndarray, np.ndarray]:
+    """Which configuration, its motion (angles times the radius), and whether it keeps each pair, shape (n, P)."""
     everything = np.arange(len(geometry.names))[None]
     vectors = geometry.equations(start.q, everything).face_vectors / weights(geometry)
     ends = geometry.at_apices(start.q, TOUCHING * geometry.size)
     turns = np.zeros(geometry.dimension, dtype=bool)
     turns[geometry.turns] = True
-    rows: list[int] = []
-    displacements: list[np.ndarray] = []
-    kept: list[np.ndarray] = []
+    rows = [np.zeros(0, dtype=int)]
+    displacements = [np.zeros((0, geometry.dimension))]
+    kept = [start.touching[:0]]
     for k, touching in enumerate(start.touching):
         pairs = np.flatnonzero(touching)
         if not pairs.size:
@@ -175,22 +173,39 @@ def _modes(geometry: ContactGeometry, start: Sorted) -> tuple[np.ndarray, np.nda
         if isinstance(geometry, SpatialGeometry):
             points = point_motions(geometry, start.q[k], pairs[at_end], vectors[k, pairs[at_end], :3])
         found = geometry.rows(start.q[k], pairs, vectors[k, pairs], at_end)
-        for mode in contact_modes(found.vectors, found.at_end, geometry.free, turns, points):
-            rows.append(k)
-            displacements.append(mode.displacement)
-            kept.append(pairs[found.pairs_kept(mode.kept)])
-    width = max((len(pairs) for pairs in kept), default=1)
-    padded = np.full((len(kept), max(width, 1)), -1)
-    for row, pairs in zip(padded, kept, strict=True):
-        row[: len(pairs)] = pairs
-    return np.array(rows, dtype=int), np.array(displacements).reshape(len(rows), geometry.dimension), padded
+        modes = contact_modes(found.vectors, found.at_end, geometry.free, turns, points)
+        if modes:
+            rows.append(np.full(len(modes), k))
+            displacements.append(np.array([mode.displacement for mode in modes]))
+            kept.append(np.zeros((len(modes), len(touching)), dtype=bool))
+            kept[-1][:, pairs] = found.pairs_kept(np.array([mode.kept for mode in modes]))
+    return np.concatenate(rows), np.concatenate(displacements), np.concatenate(kept)
+
+
+def again(known: KnownStates, rng: np.random.Generator) -> Sorted:
+    """Clear configurations for states that so far only unclear ones told of: their equations, solved from beside these.
+
+    Beside a state in which edges are along each other lie others in which they nearly are, and farther away less so.
+    """
+    geometry = known.geometry
+    q, touching = known.doubts()
+    q, touching = np.repeat(q, _AGAIN, axis=0), np.repeat(touching & geometry.takes_part, _AGAIN, axis=0)
+    away = rng.normal(size=(len(q), geometry.dimension)) * geometry.radius / weights(geometry)
+    away *= rng.choice(_BESIDE, size=(len(q), 1))
+    return onto_all(geometry, geometry.moved(q, np.where(geometry.free, away, 0.0)), touching)
+
+
+#: Starts for each state that only unclear configurations tell of, and how far beside these, relative to the radius [-].
+_AGAIN, _BESIDE = 30, (0.01, 0.03, 0.1)
 
 
 def _padded(touching: np.ndarray) -> np.ndarray:
     """The pairs that touch, one configuration a row, -1 for none."""
-    width = max(int(touching.sum(axis=1).max(initial=0)), 1)
-    order = np.argsort(~touching, axis=1, kind="stable")[:, :width]
-    return np.where(np.take_along_axis(touching, order, axis=1), order, -1)
+    rows, pairs = np.nonzero(touching)
+    counts = touching.sum(axis=1)
+    found = np.full((len(touching), max(int(counts.max(initial=0)), 1)), -1)
+    found[rows, np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)] = pairs
+    return found
 
 
 def connect(known: KnownStates, tight: Sorted, loose: Sorted) -> None:
@@ -231,6 +246,6 @@ def _begins(geometry: ContactGeometry, tight: Sorted, loose: Sorted, way: np.nda
         aside = np.linalg.norm(geometry.between(aim, q) * weights(geometry), axis=1)
         found = sort_configurations(geometry, q)
         among = (found.touching | ~loose.touching).all(axis=1) & (tight.touching | ~found.touching).all(axis=1)
-        near = aside <= _BESIDE * share * np.linalg.norm(way * weights(geometry), axis=1)
+        near = aside <= _OFF_COURSE * share * np.linalg.norm(way * weights(geometry), axis=1)
         good &= arrived & found.admissible & among & near
     return good

@@ -65,8 +65,11 @@ class ContactGeometry(Protocol):
         """Contact equations of chosen pairs; q of shape (n, c), chosen of shape (n, m) or (1, m)."""
         ...
 
-    def solving(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
-        """As `equations`, to move configurations to where all chosen pairs touch; P more is a pair at its end."""
+    def solving(self, q: np.ndarray, chosen: np.ndarray, *, ends: bool = True) -> PairEquations:
+        """As `equations`, to move configurations to where all chosen pairs touch; P more is a pair at its end.
+
+        Without ``ends`` only those that are `firm` are wanted; others may be left out.
+        """
         ...
 
     @property

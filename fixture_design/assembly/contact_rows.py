@@ -28,9 +28,10 @@ class ContactRows:
         """One row each."""
         return cls(vectors, at_end, tuple(np.array([k]) for k in range(len(vectors))), (True,) * len(vectors))
 
-    def pairs_kept(self, rows: Mask) -> Mask:
-        """Which pairs a motion keeps that keeps these rows."""
-        return np.array(
-            [rows[own].all() if whole else rows[own].any() for own, whole in zip(self.owned, self.whole, strict=True)],
-            dtype=bool,
-        )
+    def pairs_kept(self, rows: np.ndarray) -> np.ndarray:
+        """Which pairs motions keep (k, m) that keep these rows (k, r)."""
+        kept = [
+            rows[:, own].all(axis=1) if whole else rows[:, own].any(axis=1)
+            for own, whole in zip(self.owned, self.whole, strict=True)
+        ]
+        return np.stack(kept, axis=1)

@@ -7,6 +7,7 @@ lengths, down to a thousandth of the way to the next contact.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,32 @@ _ASIDE = 1.0
 
 
 @dataclass(frozen=True, eq=False)
+class Proposed:
+    """Motions of which one length tells a state, each from an admissible configuration.
+
+    Attributes:
+        start: where from.  displacements: shape (n, d), angles times the radius, unit length.
+        kept: shape (n, m), the pairs that stay, each at least once; -1 stands for none.
+        longest: how far they may go, shape (n,) [m].
+        decisive: where they are at the last length that must agree: the state that they lead to, if they exist.
+    """
+
+    start: Sorted
+    displacements: np.ndarray
+    kept: np.ndarray
+    longest: np.ndarray
+    decisive: Sorted
+
+    def __getitem__(self, rows: np.ndarray) -> Proposed:
+        return Proposed(
+            self.start[rows], self.displacements[rows], self.kept[rows], self.longest[rows], self.decisive[rows]
+        )
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+@dataclass(frozen=True, eq=False)
 class Followed:
     """Motions that exist.
 
@@ -42,61 +69,50 @@ class Followed:
     ends: Sorted
 
 
-def follow(geometry: ContactGeometry, q: np.ndarray, displacements: np.ndarray, kept: np.ndarray) -> Followed:
-    """Follows motions from admissible configurations.
+def propose(
+    geometry: ContactGeometry, start: Sorted, displacements: np.ndarray, kept: np.ndarray
+) -> tuple[Proposed, Sorted]:
+    """The motions that tell a state at the last length that must agree; arguments as in `Proposed`.
 
-    Args:
-        q: shape (n, c).  displacements: shape (n, d), angles times the radius, unit length.
-        kept: shape (n, m), the pairs that stay, each at least once; -1 stands for none.
-
-    Returns:
-        the motions that lead to one and the same state at the shortest lengths, as far as they do.
+    Nearly all that fail do so there: they need not be looked at any further. Where others are that do not say clearly
+    what touches, but may tell of a state, comes second.
     """
-    if not len(q):
-        return Followed(np.zeros(0, dtype=int), sort_configurations(geometry, q))
-    longest = _longest(geometry, q, displacements)
-    # at the last length that must agree nearly all fail that do: they need not be looked at any further
-    decisive = _moved(geometry, q, displacements, kept, _SHARES[_MUST_AGREE - 1] * longest)
-    lasting = np.flatnonzero(decisive.clear)
-    followed = _followed(
-        geometry, q[lasting], displacements[lasting], kept[lasting], longest[lasting], decisive[lasting]
-    )
-    return Followed(lasting[followed.rows], followed.ends)
+    longest = _longest(geometry, start, displacements)
+    decisive = _moved(geometry, start.q, displacements, kept, _SHARES[_MUST_AGREE - 1] * longest)
+    proposed = Proposed(start, displacements, kept, longest, decisive)
+    return proposed[np.flatnonzero(decisive.clear)], decisive[decisive.admissible & ~decisive.clear]
 
 
-def _followed(
-    geometry: ContactGeometry,
-    q: np.ndarray,
-    displacements: np.ndarray,
-    kept: np.ndarray,
-    longest: np.ndarray,
-    decisive: Sorted,
-) -> Followed:
+def follow(geometry: ContactGeometry, proposed: Proposed) -> Followed:
+    """The motions that lead to one and the same state at the shortest lengths, as far as they do."""
+    start, displacements, kept = proposed.start, proposed.displacements, proposed.kept
+    if not len(start):
+        return Followed(np.zeros(0, dtype=int), start)
     ways = [
-        decisive if k == _MUST_AGREE - 1 else _moved(geometry, q, displacements, kept, share * longest)
+        proposed.decisive
+        if k == _MUST_AGREE - 1
+        else _moved(geometry, start.q, displacements, kept, share * proposed.longest)
         for k, share in enumerate(_SHARES)
     ]
     # the shortest lengths may be too short to tell what touches; what they say is not wrong, but nothing
     silent = np.logical_and.accumulate([way.admissible & ~way.clear for way in ways])
     first = silent.sum(axis=0)
-    agreeing, last = np.zeros(len(q), dtype=int), np.zeros(len(q), dtype=int)
-    going = np.ones(len(q), dtype=bool)
+    agreeing, last = np.zeros(len(start), dtype=int), np.zeros(len(start), dtype=int)
+    going = np.ones(len(start), dtype=bool)
     patterns = np.array([way.touching for way in ways])
     for k, way in enumerate(ways):
         begins = np.minimum(first, len(ways) - 1)
-        same = way.clear & (way.touching == patterns[begins, np.arange(len(q))]).all(axis=1)
+        same = way.clear & (way.touching == patterns[begins, np.arange(len(start))]).all(axis=1)
         going &= same | (k < first)
         agreeing += going & same
         last[going & same] = k
     rows = np.flatnonzero(agreeing >= _MUST_AGREE)
-    return Followed(rows, joined(ways)[last[rows] * len(q) + rows])
+    return Followed(rows, joined(ways)[last[rows] * len(start) + rows])
 
 
-def _longest(geometry: ContactGeometry, q: np.ndarray, displacements: np.ndarray) -> np.ndarray:
+def _longest(geometry: ContactGeometry, start: Sorted, displacements: np.ndarray) -> np.ndarray:
     """How far the motions may go without meeting what is not in contact now, shape (n,), as lengths [m]."""
-    here = sort_configurations(geometry, q)
-    u = displacements / weights(geometry)
-    slow = time_to_contact(geometry, q, u, here)
+    slow = time_to_contact(geometry, start.q, displacements / weights(geometry), start)
     return np.minimum(_OF_THE_WAY * slow, _OF_THE_RADIUS * geometry.radius)
 
 
@@ -127,10 +143,27 @@ def _moved(
 def held(geometry: ContactGeometry, q: np.ndarray, kept: np.ndarray) -> tuple[np.ndarray, Mask]:
     """Configurations near q where the pairs in ``kept`` (n, m; -1 for none) touch, and whether they do."""
     end, arrived = q.copy(), np.ones(len(q), dtype=bool)
-    some = (kept >= 0).any(axis=1)
-    if some.any():
-        # a repeated pair changes nothing, so that it can fill the rows
-        filled = np.where(kept[some] >= 0, kept[some], kept[some].max(axis=1, keepdims=True))
-        end[some], left = solved(geometry, q[some], filled, ends=False)
-        arrived[some] = left <= SOLVED * geometry.size
+    for rows, chosen in filled(kept):
+        end[rows], left = solved(geometry, q[rows], chosen, ends=False)
+        arrived[rows] = left <= SOLVED * geometry.size
     return end, arrived
+
+
+def filled(kept: np.ndarray) -> Iterator[tuple[Indices, np.ndarray]]:
+    """Rows of pairs (n, m; -1 for none) without gaps: a repeated pair changes nothing, so that it can fill them.
+
+    Rows of about as many pairs come together, so that few are repeated; those without any do not come.
+    """
+    counts = (kept >= 0).sum(axis=1)
+    kept = np.take_along_axis(kept, np.argsort(kept < 0, axis=1, kind="stable"), axis=1)
+    classes = np.ceil(np.log2(np.maximum(counts, 1))).astype(int)
+    if len(kept) <= _FEW:
+        classes[:] = classes.max(initial=0)
+    for number in np.unique(classes[counts > 0]).tolist():
+        rows = np.flatnonzero((classes == number) & (counts > 0))
+        own = kept[rows, : counts[rows].max()]
+        yield rows, np.where(own >= 0, own, own[:, :1])
+
+
+#: So few rows are not worth being told apart.
+_FEW = 200

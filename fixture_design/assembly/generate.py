@@ -15,12 +15,12 @@ from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.graph import ContactState, ContactStateGraph, StateTransition
 from fixture_design.assembly.known_states import KnownStates
 from fixture_design.assembly.round_space import RoundGeometry
-from fixture_design.assembly.sampling import onto, sample
+from fixture_design.assembly.sampling import onto_all, sample
 from fixture_design.assembly.sorting import Sorted, State, joined
 from fixture_design.assembly.symmetry import Symmetries
 from fixture_design.assembly.symmetry_search import symmetries_of
-from fixture_design.assembly.unfolding import unfolded
-from fixture_design.assembly.unseen import Unseen, unseen
+from fixture_design.assembly.unfolding import Unfolded, unfolded
+from fixture_design.assembly.unseen import unseen
 from fixture_design.tolerances import APART
 
 #: Samples of each state from which the search goes on.
@@ -66,8 +66,7 @@ def state_graph(
     with suppress(KeyboardInterrupt):  # what was found is kept, and `complete` tells
         _search(known, counts, np.random.default_rng(seed), samples, progress)
         finished = True
-    known = unfolded(known)
-    return _graph(assembly, known, unseen(known.samples, counts), seed, finished)
+    return _graph(assembly, known, counts, seed, finished)
 
 
 def _search(
@@ -77,7 +76,7 @@ def _search(
     samples: int,
     progress: Callable[[str], None],
 ) -> None:
-    start = known.representatives(sample(known.geometry, rng))
+    start = known.representatives(sample(known.geometry, rng, known.symmetries))
     counts.update({state: len(rows) for state, rows in known.by_state(start).items()})
     fresh, _ = known.add(start)
     progress(f"{len(start)} of the random starts ended in {len(counts)} states")
@@ -94,34 +93,39 @@ def _search(
 def _more(known: KnownStates, rng: np.random.Generator) -> Sorted:
     """More configurations of each state: its equations solved from random starts, and from near its samples."""
     geometry = known.geometry
-    found = []
+    starts, kept = [geometry.random(rng, 0)], [np.zeros((0, len(geometry.names)), dtype=bool)]
     nearby = _NEARBY * np.linalg.norm(np.ptp(geometry.random(rng, 100)[:, :2], axis=0)) / weights(geometry)
     for known_samples in known.samples.values():
         near = known_samples.q[rng.integers(len(known_samples), size=_MORE_NEAR)]
         near = geometry.moved(near, np.where(geometry.free, rng.normal(size=(len(near), len(nearby))) * nearby, 0.0))
-        starts = np.vstack([geometry.random(rng, _MORE_RANDOM), near])
-        pairs = np.flatnonzero(known_samples.touching[0] & geometry.takes_part)
-        found.append(onto(geometry, starts, np.repeat(pairs[None], len(starts), axis=0)))
-    return joined(found)
+        starts.append(np.vstack([geometry.random(rng, _MORE_RANDOM), near]))
+        kept.append(np.repeat((known_samples.touching[0] & geometry.takes_part)[None], len(starts[-1]), axis=0))
+    return onto_all(geometry, np.concatenate(starts), np.concatenate(kept))
 
 
-def _graph(assembly: Assembly, known: KnownStates, rest: Unseen, seed: int, finished: bool) -> ContactStateGraph:
-    geometry = known.geometry
-    ordered = sorted(known.samples, key=lambda contacts: (len(contacts), contacts))
+def _graph(
+    assembly: Assembly, known: KnownStates, counts: dict[State, int], seed: int, finished: bool
+) -> ContactStateGraph:
+    geometry, found = known.geometry, unfolded(known)
     # N1 stands for no contact, also where the region leaves no room for it
-    first = 1 if not ordered or ordered[0] == () else 2
-    ids = {contacts: f"N{number}" for number, contacts in enumerate(ordered, start=first)}
-    states = tuple(_state(geometry, ids[contacts], contacts, known.samples[contacts]) for contacts in ordered)
-    between = [pair for pair in known.transitions if pair[0] in ids and pair[1] in ids]
-    q = geometry.canonical(np.array([known.transitions[pair].q for pair in between])) if between else []
-    edges = [
-        StateTransition(ids[pair[0]], ids[pair[1]], at, known.transitions[pair].displacement)
-        for pair, at in zip(between, q, strict=True)
-    ]
-    edges.sort(key=lambda edge: (int(edge.loose[1:]), int(edge.tight[1:])))
-    return ContactStateGraph(assembly, states, tuple(edges), rest, seed, finished)
+    first = 1 if not found.states or found.states[0] == () else 2
+    ids = [f"N{number}" for number in range(first, first + len(found.states))]
+    edges = map(
+        StateTransition,
+        [ids[k] for k in found.tight.tolist()],
+        [ids[k] for k in found.loose.tolist()],
+        geometry.canonical(found.q),
+        found.displacements,
+    )
+    return ContactStateGraph(
+        assembly, _states(geometry, ids, found), tuple(edges), unseen(found.states, counts), seed, finished
+    )
 
 
-def _state(geometry: ContactGeometry, name: str, contacts: State, found: Sorted) -> ContactState:
-    coincident = bool(geometry.coincident(found.q[:1], APART * geometry.size)[0])
-    return ContactState(name, contacts, coincident, geometry.canonical(found.q))
+def _states(geometry: ContactGeometry, ids: list[str], found: Unfolded) -> tuple[ContactState, ...]:
+    if not ids:
+        return ()
+    coincident = geometry.coincident(np.array([q[0] for q in found.samples]), APART * geometry.size)
+    ends = np.cumsum([len(q) for q in found.samples])
+    samples = np.split(geometry.canonical(np.concatenate(found.samples)), ends[:-1])
+    return tuple(map(ContactState, ids, found.states, coincident.tolist(), samples))

@@ -11,6 +11,7 @@ from fixture_design.assembly.assembly import Configuration
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.sorting import Sorted, State, alike, joined, state_of, states_of
 from fixture_design.assembly.symmetry import Symmetries
+from fixture_design.tolerances import SOLVED
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,8 @@ class KnownStates:
     samples: dict[State, Sorted] = field(default_factory=dict)
     transitions: dict[tuple[State, State], Transition] = field(default_factory=dict)
     _linked: set[bytes] = field(default_factory=set)
+    _doubtful: dict[bytes, tuple[Configuration, Mask]] = field(default_factory=dict)
+    _told: set[bytes] = field(default_factory=set)
 
     def add(self, found: Sorted) -> tuple[Sorted, int]:
         """Takes clear configurations in; returns those that are kept as samples, and how many states are new.
@@ -49,7 +52,7 @@ class KnownStates:
         A sample is kept while its state has too few, if it is away from those there are.
         """
         kept, before = [], len(self.samples)
-        found = self.representatives(found)
+        found = self.representatives(found[self._well_known(found)])
         for state, rows in self.by_state(found).items():
             fresh = self._away(state, found[rows])
             if len(fresh):
@@ -89,9 +92,34 @@ class KnownStates:
 
     def linked(self, tight: np.ndarray, loose: np.ndarray) -> Mask:
         """Whether transitions between patterns (n, P), or images of them, are known."""
+        first, places = alike(np.concatenate([tight, loose], axis=1))
+        keys = _keys(*self._images(tight[first], loose[first]))
+        return np.array([key in self._linked for key in keys], dtype=bool)[places]
+
+    def orbits(self, tight: np.ndarray, loose: np.ndarray) -> Indices:
+        """Numbers of the orbits that transitions between patterns (n, P) are in."""
+        first, places = alike(np.concatenate([tight, loose], axis=1))
+        return alike(np.concatenate(self._images(tight[first], loose[first]), axis=1))[1][places]
+
+    def _images(self, tight: np.ndarray, loose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         elements = self.symmetries.to_representatives(tight, loose)
-        images = (self.symmetries.permuted(elements, touching) for touching in (tight, loose))
-        return np.array([key in self._linked for key in _keys(*images)], dtype=bool)
+        return self.symmetries.permuted(elements, tight), self.symmetries.permuted(elements, loose)
+
+    def doubt(self, found: Sorted) -> None:
+        """Takes in configurations that do not say clearly what touches, one of each state."""
+        first, _ = alike(found.touching)
+        found = self.representatives(found[first])
+        for q, touching in zip(found.q, found.touching, strict=True):
+            self._doubtful.setdefault(touching.tobytes(), (q, touching))
+
+    def doubts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Such configurations (n, c) and their patterns (n, P), of states that are not known; each is told once."""
+        known = {found.touching[0].tobytes() for found in self.samples.values()}
+        fresh = [both for key, both in self._doubtful.items() if key not in known and key not in self._told]
+        self._told.update(self._doubtful)
+        q, touching = (np.array([both[k] for both in fresh]) for k in range(2))
+        some = next(iter(self.samples.values()))
+        return q.reshape(-1, some.q.shape[1]), touching.reshape(-1, some.touching.shape[1]).astype(bool)
 
     def representatives(self, found: Sorted) -> Sorted:
         """The configurations' images in the representatives of their states' orbits."""
@@ -99,6 +127,10 @@ class KnownStates:
             return found
         first, places = alike(found.touching)
         return self.symmetries.of(self.symmetries.to_representatives(found.touching[first])[places], found)
+
+    def _well_known(self, found: Sorted) -> Mask:
+        """Which configurations still touch as well as they must after rounding, as that of their images."""
+        return np.where(found.touching, found.distances, 0.0).max(axis=1, initial=0.0) <= _WELL * self.geometry.size
 
     def _away(self, state: State, found: Sorted) -> Sorted:
         """The configurations farthest from the samples and each other, as many as there is room for."""
@@ -126,6 +158,9 @@ class KnownStates:
 def _keys(tight: np.ndarray, loose: np.ndarray) -> list[bytes]:
     return [row.tobytes() for row in np.packbits(np.concatenate([tight, loose], axis=1), axis=1)]
 
+
+#: What touches in a sample does so within this, relative to the size [-]: half of what it must.
+_WELL = SOLVED / 2
 
 #: Samples this near to each other, relative to the size, are one [-].
 _SAME = 1e-6

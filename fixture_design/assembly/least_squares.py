@@ -55,7 +55,7 @@ def solved(
             before[active] = left[active]
         if not len(active):
             break
-        found = geometry.solving(q[active], chosen[active])
+        found = geometry.solving(q[active], chosen[active], ends=ends)
         kept = slice(None) if ends else list(found.firm)
         values = found.values[:, :, kept].reshape(len(active), -1)
         left[active] = np.linalg.norm(values, axis=1)

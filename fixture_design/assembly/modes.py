@@ -70,8 +70,7 @@ def contact_modes(
         signed = rows.copy()
         signed[at_end] *= np.where(turned, -signs, 1.0)[:, None]
         equal = np.flatnonzero(at_end)[~turned]
-        for displacement, kept in _of_one_cone(signed, modes, turns[free], equal):
-            modes.add(displacement, kept)
+        modes.add(*_of_one_cone(signed, modes, turns[free], equal))
     return list(modes.found.values())
 
 
@@ -82,28 +81,48 @@ class _Modes:
         self.rows, self.free, self.points = rows, free, points
         self.found: dict[bytes, Mode] = {}
         self._depend: dict[bytes, bool] = {}
-        self._circuits: dict[bytes, Indices] = {}
+        self._fewer: dict[bytes, list[tuple[Mask, bytes]]] = {}
         self._may: dict[tuple[int, bytes], bool] = {}
 
-    def add(self, displacement: Vector, kept: Mask) -> None:
-        """Takes a mode in, and where its contacts depend on each other those with some of them dropped."""
-        rates = self.rows @ displacement
-        pattern = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
-        direction = np.round(displacement, 3).tobytes()
-        full = np.zeros(len(self.free))
-        full[self.free] = displacement
-        if not self._new(pattern, direction, Mode(full, kept)):
-            return
-        if self.dependent(kept) and np.count_nonzero(kept) <= _MOST_DROPPED:
-            for fewer in _with_dropped(kept, self._in_circuits(kept)):
-                if self._possible(fewer):
-                    self._new(pattern, direction, Mode(full, fewer))
+    def add(self, displacements: Rows, kept: np.ndarray) -> None:
+        """Takes modes in, and where the contacts of one depend on each other those with some of them dropped.
 
-    def _new(self, pattern: np.ndarray, direction: bytes, mode: Mode) -> bool:
-        # where contacts depend on each other, the first order does not tell all motions apart
-        doubtful = not pattern.any() or self.dependent(mode.kept)
-        key = pattern.tobytes() + np.packbits(mode.kept).tobytes() + (direction if doubtful else b"")
-        return self.found.setdefault(key, mode) is mode
+        Args:
+            displacements: of the freedoms that are free, shape (k, f).  kept: shape (k, m).
+        """
+        if not len(displacements):
+            return
+        rates = displacements @ self.rows.T
+        patterns = np.where(np.abs(rates) <= DEPENDENT, 0.0, np.sign(rates)).astype(np.int8)
+        moving = np.any(patterns, axis=1)
+        directions = np.round(displacements, 3)
+        full = np.zeros((len(displacements), len(self.free)))
+        full[:, self.free] = displacements
+        packed = np.packbits(kept, axis=1)
+        for k, (displacement, moves) in enumerate(zip(full, moving.tolist(), strict=True)):
+            own = packed[k].tobytes()
+            pattern, direction = patterns[k].tobytes(), directions[k].tobytes()
+            # where contacts depend on each other, the first order does not tell all motions apart
+            doubtful = not moves or self.dependent(kept[k], own)
+            if not self._new(pattern + own + (direction if doubtful else b""), displacement, kept[k]):
+                continue
+            for fewer, key in self._dropped(kept[k], own):
+                doubtful = not moves or self.dependent(fewer, key)
+                self._new(pattern + key + (direction if doubtful else b""), displacement, fewer)
+
+    def _new(self, key: bytes, displacement: Vector, kept: Mask) -> bool:
+        if key in self.found:
+            return False
+        self.found[key] = Mode(displacement, kept)
+        return True
+
+    def _dropped(self, kept: Mask, key: bytes) -> list[tuple[Mask, bytes]]:
+        """What is left of contacts that depend on each other with some of them dropped."""
+        if key not in self._fewer:
+            some = self.dependent(kept, key) and np.count_nonzero(kept) <= _MOST_DROPPED
+            fewer = _with_dropped(kept, self._in_circuits(kept)) if some else ()
+            self._fewer[key] = [(f, np.packbits(f).tobytes()) for f in fewer if self._possible(f)]
+        return self._fewer[key]
 
     def _possible(self, kept: Mask) -> bool:
         """Whether each point may keep what is left of its own contacts."""
@@ -118,16 +137,12 @@ class _Modes:
 
     def _in_circuits(self, kept: Mask) -> Indices:
         """Contacts kept whose face vectors depend on others': any other can be left alone by the first order."""
-        key = kept.tobytes()
-        if key not in self._circuits:
-            left, values, _ = np.linalg.svd(self.rows[kept])
-            rank = int(np.count_nonzero(values > DEPENDENT))
-            self._circuits[key] = np.flatnonzero(kept)[(np.abs(left[:, rank:]) > DEPENDENT).any(axis=1)]
-        return self._circuits[key]
+        left, values, _ = np.linalg.svd(self.rows[kept])
+        rank = int(np.count_nonzero(values > DEPENDENT))
+        return np.flatnonzero(kept)[(np.abs(left[:, rank:]) > DEPENDENT).any(axis=1)]
 
-    def dependent(self, kept: Mask) -> bool:
-        """Whether the face vectors of some contacts depend on each other."""
-        key = np.packbits(kept).tobytes()
+    def dependent(self, kept: Mask, key: bytes) -> bool:
+        """Whether the face vectors of some contacts depend on each other; ``key``: the contacts, packed."""
         if key not in self._depend:
             self._depend[key] = _dependent(self.rows[kept])
         return self._depend[key]
@@ -175,23 +190,30 @@ def _lines(rows: Rows) -> tuple[Indices, Weights]:
     return lines, sides
 
 
-def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask, equal: Indices) -> Iterator[tuple[Vector, Mask]]:
+def _of_one_cone(signed: Rows, modes: _Modes, turns: Mask, equal: Indices) -> tuple[Rows, np.ndarray]:
+    """Motions along the faces of a cone, and the contacts that each keeps."""
     cone = convert_rows(signed, signed[equal], _ROUNDED)
     faces = faces_of(len(cone.lines), cone.vectors, cone.incidence, signed.shape[1])
+    # along the lineality space nothing is left to first order: its own directions stand for it
     along = [*cone.lines, *-cone.lines]
-    for kept, witness in zip(faces.rows, faces.witnesses, strict=True):
-        # along the lineality space nothing is left to first order: its own directions stand for it
-        for displacement in [witness] if witness.any() else along:
-            yield displacement, kept
-        if witness.any() and len(cone.lines) and modes.dependent(kept):
-            yield _turned_least(witness, cone.lines, turns), kept
+    least = _turned_least(np.array(faces.witnesses), cone.lines, turns) if len(cone.lines) else None
+    motions: list[Vector] = []
+    kept: list[Mask] = []
+    for k, (own, witness) in enumerate(zip(faces.rows, faces.witnesses, strict=True)):
+        here = [witness] if witness.any() else along
+        if witness.any() and least is not None and modes.dependent(own, np.packbits(own).tobytes()):
+            here = [witness, least[k]]
+        motions += here
+        kept += [own] * len(here)
+    shape = len(motions), signed.shape[1]
+    return np.array(motions).reshape(shape), np.array(kept, dtype=bool).reshape(len(motions), len(signed))
 
 
-def _turned_least(witness: Vector, lines: Rows, turns: Mask) -> Vector:
-    """The motion of a face that turns least: facets along each other keep their contacts only while they stay so."""
-    shares, *_ = np.linalg.lstsq(lines[:, turns].T, witness[turns], rcond=None)
-    least = witness - shares @ lines
-    return least / np.linalg.norm(least)
+def _turned_least(witnesses: Rows, lines: Rows, turns: Mask) -> Rows:
+    """Of each face the motion that turns least: facets along each other keep their contacts only while they stay so."""
+    inverse = np.linalg.pinv(lines[:, turns].T, rcond=max(lines.shape) * np.finfo(float).eps)
+    least = witnesses - witnesses[:, turns] @ inverse.T @ lines
+    return least / np.maximum(np.linalg.norm(least, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
 def _with_dropped(kept: Mask, places: Indices) -> Iterator[Mask]:

@@ -71,7 +71,7 @@ class PlanarGeometry:
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(q, chosen)
 
-    def solving(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
+    def solving(self, q: np.ndarray, chosen: np.ndarray, *, ends: bool = True) -> PairEquations:
         return self.equations(q, chosen)
 
     @property

@@ -100,24 +100,47 @@ class PolygonRims:
         return np.where(inside, 0.0, distance), (flat[..., None] * rims.bases).sum(axis=-2)
 
     def beyond(self, points: np.ndarray) -> np.ndarray:
-        _, distance, inside = self._seen(points[:, :, None])
-        return np.where(inside, -distance, distance)
+        flat = np.ascontiguousarray(points.reshape(-1, 3).T)
+        found = np.empty((len(self.bases), flat.shape[1]))
+        for row, basis, starts, ends in zip(found, self.bases, self.starts, self.ends, strict=True):
+            # segments that only fill the table are points
+            rim = (starts != ends).any(axis=-1)
+            _, distance, inside = _nearest(basis @ flat, starts[rim], ends[rim])
+            row[:] = np.where(inside, -distance, distance)
+        return found.T.reshape(*points.shape[:2], len(found))
 
     def _seen(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """From the nearest point of each rim, how far that is, and whether the rim surrounds the point."""
-        x, y = ((points * self.bases[..., k, :]).sum(axis=-1)[..., None] for k in range(2))
-        (x0, y0), (x1, y1) = (np.moveaxis(corners, -1, 0) for corners in (self.starts, self.ends))
+        place = np.stack([(points * self.bases[..., k, :]).sum(axis=-1) for k in range(2)])
+        # segments first, then the two coordinates
+        starts, ends = (np.moveaxis(corners, (-2, -1), (0, 1)) for corners in (self.starts, self.ends))
+        away, distance, inside = _nearest(place, starts, ends)
+        return np.moveaxis(away, 0, -1), distance, inside
+
+
+def _nearest(place: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """From the nearest point of a rim to points, how far that is, and whether the rim surrounds them.
+
+    Args:
+        place: shape (2, ...).  starts, ends: of k segments, shape (k, 2, ...), the same rim for all points or one each.
+    """
+    x, y = place
+    least, away = np.full(x.shape, np.inf), np.zeros(place.shape)
+    inside = np.zeros(x.shape, dtype=bool)
+    for (x0, y0), (x1, y1) in zip(starts, ends, strict=True):
         u, v = x1 - x0, y1 - y0
-        squared = np.maximum(u * u + v * v, np.finfo(float).tiny)
-        share = np.clip(((x - x0) * u + (y - y0) * v) / squared, 0.0, 1.0)
-        gap = x - x0 - share * u, y - y0 - share * v
-        distances = np.hypot(*gap)
-        nearest = distances.argmin(axis=-1)[..., None]
-        away = np.concatenate([np.take_along_axis(part, nearest, axis=-1) for part in gap], axis=-1)
+        right, up = x - x0, y - y0
+        share = np.clip((right * u + up * v) / np.maximum(u * u + v * v, np.finfo(float).tiny), 0.0, 1.0)
+        gap = right - share * u, up - share * v
+        squared = gap[0] * gap[0] + gap[1] * gap[1]
+        nearer = squared < least
+        np.copyto(least, squared, where=nearer)
+        for kept, own in zip(away, gap, strict=True):
+            np.copyto(kept, own, where=nearer)
         # a line along the first axis crosses the rim an odd number of times from inside; ends are compared as they are,
         # so that it crosses one of two segments that meet, or both, or none, but never half of one
-        crossed = ((y < y0) != (y < y1)) & (x < x0 + u * (y - y0) / np.where(v == 0, 1.0, v))
-        return away, np.take_along_axis(distances, nearest, axis=-1)[..., 0], crossed.sum(axis=-1) % 2 == 1
+        inside ^= ((y < y0) != (y < y1)) & (right < u * up / np.where(v == 0, 1.0, v))
+    return away, np.sqrt(least), inside
 
 
 def _padded(rows: list[np.ndarray]) -> np.ndarray:

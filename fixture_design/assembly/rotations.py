@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from fixture_design.arrays import cross_products
+
 
 def matrices(quaternions: np.ndarray) -> np.ndarray:
     """R, shape (n, 3, 3)."""
@@ -26,7 +28,7 @@ def product(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     a, b = first[:, :1], second[:, :1]
     u, v = first[:, 1:], second[:, 1:]
     scalar = a * b - np.einsum("ni,ni->n", u, v)[:, None]
-    return np.concatenate([scalar, a * v + b * u + np.cross(u, v)], axis=1)
+    return np.concatenate([scalar, a * v + b * u + cross_products(u, v)], axis=1)
 
 
 def from_vectors(turns: np.ndarray) -> np.ndarray:

@@ -117,7 +117,7 @@ class RoundGeometry(SpatialMotions):
         """Four numbers a pair: gap, how far beyond an end, and two tilts of disks on planes."""
         return self._equations(q, chosen, joined=False)
 
-    def solving(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
+    def solving(self, q: np.ndarray, chosen: np.ndarray, *, ends: bool = True) -> PairEquations:
         """As `equations`; ``chosen`` may be P more than a pair's number: then the pair is to touch at its end.
 
         Where a circle passes from a plane or a wall over a rim, its two pairs touch in one point with one normal, and

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool
@@ -70,14 +71,23 @@ def _sorted(geometry: ContactGeometry, q: np.ndarray) -> Sorted:
 
 def state_of(geometry: ContactGeometry, touching: Mask) -> State:
     """The names of the pairs that touch and take part."""
-    names = geometry.names
-    return tuple(sorted([names[k] for k in np.flatnonzero(touching & geometry.takes_part).tolist()]))
+    return names_of(geometry, touching[None])[0]
+
+
+def names_of(geometry: ContactGeometry, touching: Bool[np.ndarray, "n P"]) -> list[State]:
+    """As `state_of`, of each row."""
+    order = np.argsort(geometry.names)
+    names = np.array(geometry.names, dtype=object)[order]
+    rows, places = np.nonzero((touching & geometry.takes_part)[:, order])
+    ends = np.searchsorted(rows, np.arange(len(touching) + 1)).tolist()
+    found = names[places].tolist()
+    return [tuple(found[first:last]) for first, last in pairwise(ends)]
 
 
 def states_of(geometry: ContactGeometry, touching: Bool[np.ndarray, "n P"]) -> list[State]:
-    """As `state_of`, of each row; many rows are the same."""
+    """As `state_of`, of each row; many rows are the same, and have the same one."""
     first, places = alike(touching)
-    states = [state_of(geometry, touching[k]) for k in first]
+    states = names_of(geometry, touching[first])
     return [states[place] for place in places.tolist()]
 
 
@@ -87,3 +97,12 @@ def alike(touching: Bool[np.ndarray, "n P"]) -> tuple[Indices, Indices]:
     keys = packed.view(f"V{packed.shape[1]}").ravel() if packed.size else np.zeros(len(packed))
     _, first, places = np.unique(keys, return_index=True, return_inverse=True)
     return first, places.ravel()
+
+
+def numbered(places: Indices) -> Indices:
+    """Of each row, how many before it have the same number."""
+    order = np.argsort(places, kind="stable")
+    firsts = np.searchsorted(places[order], places[order])
+    found = np.empty(len(places), dtype=int)
+    found[order] = np.arange(len(order)) - firsts
+    return found

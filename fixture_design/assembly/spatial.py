@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
@@ -55,9 +54,8 @@ class SpatialGeometry(SpatialMotions):
         size = max(reach, float(np.abs([region.low, region.high]).max()))
         radius = float(np.sqrt((moving.vertices**2).sum(axis=1).mean()))
         free = np.array([True] * 3 + [region.turning != "fixed"] * 3)
-        axes = tuple(
-            SeparatingAxes.of(a, b) for a, b in product(moving.pieces, (p for body in fixed for p in body.pieces))
-        )
+        theirs = [piece for body in fixed for piece in body.pieces]
+        axes = tuple(own for piece in moving.pieces for own in SeparatingAxes.of(piece, theirs))
         return cls(moving, fixed, pairs, together, axes, region, size, radius, free)
 
     @property
@@ -71,8 +69,8 @@ class SpatialGeometry(SpatialMotions):
     def equations(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
         return self.pairs.equations(rotations.matrices(q[:, 3:]), q[:, :3], chosen)
 
-    def solving(self, q: np.ndarray, chosen: np.ndarray) -> PairEquations:
-        return self.equations(q, chosen)
+    def solving(self, q: np.ndarray, chosen: np.ndarray, *, ends: bool = True) -> PairEquations:
+        return self.pairs.equations(rotations.matrices(q[:, 3:]), q[:, :3], chosen, ends=ends)
 
     @property
     def ending(self) -> Mask:

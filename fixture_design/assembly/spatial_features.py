@@ -9,9 +9,11 @@ import numpy as np
 from fixture_design.arrays import Points, Weights
 from fixture_design.assembly.assembly import Region
 from fixture_design.assembly.contact_geometry import refuse_too_many
+from fixture_design.assembly.edge_pairs import EdgePairs
+from fixture_design.assembly.facet_pairs import FacetPairs
 from fixture_design.assembly.polyhedron import Polyhedron
 from fixture_design.assembly.rims import ConvexRims, PolygonRims, Rims
-from fixture_design.assembly.spatial_pairs import EdgePairs, FacetPairs, SpatialPairs
+from fixture_design.assembly.spatial_pairs import SpatialPairs
 from fixture_design.assembly.together import intervals, overlapping
 from fixture_design.errors import AssemblyError
 from fixture_design.tolerances import TOUCHING

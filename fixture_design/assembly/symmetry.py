@@ -96,18 +96,45 @@ class Symmetries:
         """
         if len(self) == 1:
             return np.zeros(len(touching), dtype=int)
-        sums = touching.astype(np.int64) @ self._keys.T
+        sums = self.image_keys(touching)
         if then is not None:
-            behind = then.astype(np.int64) @ self._keys.T
+            behind = self.image_keys(then)
             least = sums == sums.min(axis=1, keepdims=True)
             sums = np.where(least, behind, np.iinfo(np.int64).max)
         return sums.argmin(axis=1)
 
-    def orbit(self, touching: np.ndarray, then: np.ndarray | None = None) -> Indices:
-        """Elements that make all different images of a pattern (P,), or of two together, one for each."""
-        if len(self) == 1:
-            return np.zeros(1, dtype=int)
-        sums = touching.astype(np.int64) @ self._keys.T
-        columns = [sums] if then is None else [sums, then.astype(np.int64) @ self._keys.T]
-        _, first = np.unique(np.stack(columns, axis=1), axis=0, return_index=True)
-        return np.sort(first)
+    def image_keys(self, touching: np.ndarray) -> np.ndarray:
+        """Of patterns (n, P) the images by all elements, each as one random number: shape (n, g)."""
+        return touching.astype(np.int64) @ self._keys.T
+
+    def first_of_sets(self, sets: np.ndarray) -> Indices:
+        """The first rows of which no other before is an image, of sets of pairs (s, k)."""
+        least = [
+            self._keys[:, sets[k : k + _SETS_TOGETHER]].sum(axis=-1).min(axis=0)
+            for k in range(0, len(sets), _SETS_TOGETHER)
+        ]
+        return np.sort(np.unique(np.concatenate(least), return_index=True)[1])
+
+    def orbits(self, touching: np.ndarray, then: np.ndarray | None = None) -> tuple[Indices, Indices]:
+        """Rows, and elements that make all different images of each pattern (n, P), or of two together, one for each.
+
+        The elements of each row are in order.
+        """
+        keys = self.image_keys(touching)
+        # wrapped around: as good a random number for both together
+        keys = keys if then is None else keys + _BOTH * self.image_keys(then)
+        order = np.argsort(keys, axis=1, kind="stable")
+        ordered = np.take_along_axis(keys, order, axis=1)
+        first = np.ones(keys.shape, dtype=bool)
+        first[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+        chosen = np.zeros(keys.shape, dtype=bool)
+        np.put_along_axis(chosen, order, first, axis=1)
+        rows, elements = np.nonzero(chosen)
+        return rows, elements
+
+
+#: An odd number by which the second of two numbers counts.
+_BOTH = np.int64(0x5851F42D4C957F2D)
+
+#: Sets of pairs whose images are looked at together.
+_SETS_TOGETHER = 4096

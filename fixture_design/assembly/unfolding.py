@@ -1,55 +1,90 @@
-"""From one state and transition of each orbit to all: the images by the symmetries."""
+"""From one state and transition of each orbit to all: the images by the symmetries, as tables."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from fixture_design.arrays import Indices
 from fixture_design.assembly.contact_geometry import ContactGeometry
-from fixture_design.assembly.known_states import KnownStates, Transition
-from fixture_design.assembly.sorting import Sorted, State, state_of
-from fixture_design.assembly.symmetry import Symmetries
+from fixture_design.assembly.known_states import KnownStates
+from fixture_design.assembly.sorting import State, names_of
 
 
-def unfolded(known: KnownStates) -> KnownStates:
-    """The same states and transitions with all their images, and no symmetries."""
-    if len(known.symmetries) == 1:
-        return known
+@dataclass(frozen=True, eq=False)
+class Unfolded:
+    """All states and transitions that symmetries make of those that are known.
+
+    Attributes:
+        states: by number of contacts and names.  samples: configurations of each, shape (k, c).
+        tight, loose: of each transition the places of its states, shape (t,); by the looser one, then the tighter.
+        q, displacements: their witnesses, shapes (t, c) and (t, d).
+    """
+
+    states: tuple[State, ...]
+    samples: tuple[np.ndarray, ...]
+    tight: Indices
+    loose: Indices
+    q: np.ndarray
+    displacements: np.ndarray
+
+
+def unfolded(known: KnownStates) -> Unfolded:
+    """The states and transitions with all their images."""
     geometry, symmetries = known.geometry, known.symmetries
-    named = _Named(geometry)
-    samples: dict[State, Sorted] = {}
-    for found in known.samples.values():
-        for element in symmetries.orbit(found.touching[0]).tolist():
-            image = symmetries.of(np.full(len(found), element), found)
-            samples[named.states(image.touching[:1])[0]] = image
-    transitions: dict[tuple[State, State], Transition] = {}
-    places = {name: k for k, name in enumerate(geometry.names)}
-    for pair, found in known.transitions.items():
-        rows = [named.touching([places[name] for name in state]) for state in pair]
-        elements = symmetries.orbit(*rows)
-        images = [named.states(symmetries.permuted(elements, np.tile(row, (len(elements), 1)))) for row in rows]
-        q = symmetries.moved(elements, np.tile(found.q, (len(elements), 1)))
-        away = symmetries.displaced(elements, np.tile(found.displacement, (len(elements), 1)))
-        transitions.update(zip(zip(*images, strict=True), map(Transition, q, away), strict=True))
-    return KnownStates(geometry, Symmetries.none(len(geometry.names)), known.most, samples, transitions)
+    touching = np.array([found.touching[0] & geometry.takes_part for found in known.samples.values()])
+    touching = touching.reshape(-1, len(geometry.names))
+    own, elements = symmetries.orbits(touching)
+    states = names_of(geometry, symmetries.permuted(elements, touching[own]))
+    order = sorted(range(len(states)), key=lambda k: (len(states[k]), states[k]))
+    own, elements = own[order], elements[order]
+    samples = _images_of_samples(known, own, elements)
+    keys = symmetries.image_keys(touching)[own, elements]
+    return Unfolded(tuple(states[k] for k in order), samples, *_transitions(known, keys))
 
 
-class _Named:
-    """The states of patterns, each made once: there are many more transitions than states."""
+def _images_of_samples(known: KnownStates, own: Indices, elements: Indices) -> tuple[np.ndarray, ...]:
+    if not len(own):
+        return ()
+    counts = np.array([len(found) for found in known.samples.values()])
+    firsts, mine = np.cumsum(counts) - counts, counts[own]
+    ends = np.cumsum(mine)
+    rows = np.arange(ends[-1]) + np.repeat(firsts[own] - (ends - mine), mine)
+    q = np.concatenate([found.q for found in known.samples.values()])[rows]
+    return tuple(np.split(known.symmetries.moved(np.repeat(elements, mine), q), ends[:-1]))
 
-    def __init__(self, geometry: ContactGeometry) -> None:
-        self.geometry = geometry
-        self._known: dict[bytes, State] = {}
 
-    def touching(self, places: list[int]) -> np.ndarray:
-        row = np.zeros(len(self.geometry.names), dtype=bool)
-        row[places] = True
-        return row
+def _transitions(known: KnownStates, keys: np.ndarray) -> tuple[Indices, Indices, np.ndarray, np.ndarray]:
+    """The images of the transitions between states with these keys, shape (s,)."""
+    geometry, symmetries = known.geometry, known.symmetries
+    tight, loose = (_patterns(geometry, [pair[k] for pair in known.transitions]) for k in range(2))
+    own, elements = symmetries.orbits(tight, loose)
+    ends = [_places(keys, symmetries.image_keys(touching)[own, elements]) for touching in (tight, loose)]
+    order = np.lexsort(ends)
+    order = order[(ends[0][order] >= 0) & (ends[1][order] >= 0)]
+    own, elements = own[order], elements[order]
+    none = geometry.random(np.random.default_rng(0), 0)
+    q = np.concatenate([none, *(found.q[None] for found in known.transitions.values())])
+    still = np.zeros((0, geometry.dimension))
+    away = np.concatenate([still, *(found.displacement[None] for found in known.transitions.values())])
+    return (
+        ends[0][order], ends[1][order], symmetries.moved(elements, q[own]), symmetries.displaced(elements, away[own])
+    )  # fmt: skip
 
-    def states(self, touching: np.ndarray) -> list[State]:
-        found = []
-        for row, packed in zip(touching, np.packbits(touching, axis=1), strict=True):
-            key = packed.tobytes()
-            if key not in self._known:
-                self._known[key] = state_of(self.geometry, row)
-            found.append(self._known[key])
-        return found
+
+def _places(keys: np.ndarray, wanted: np.ndarray) -> Indices:
+    """Where each wanted key is among the keys, -1 where it is not."""
+    order = np.argsort(keys)
+    found = np.searchsorted(keys[order], wanted)
+    places = np.append(order, -1)[found]
+    return np.where(np.append(keys, 0)[places] == wanted, places, -1)
+
+
+def _patterns(geometry: ContactGeometry, states: list[State]) -> np.ndarray:
+    """Which pairs touch in states, shape (n, P); pairs that take no part may have no name of their own."""
+    places = {geometry.names[k]: k for k in np.flatnonzero(geometry.takes_part).tolist()}
+    found = np.zeros((len(states), len(geometry.names)), dtype=bool)
+    for row, state in zip(found, states, strict=True):
+        row[[places[name] for name in state]] = True
+    return found

@@ -19,6 +19,8 @@ from fixture_design.assembly import (
 from fixture_design.assembly.geometry_of import geometry_of
 from fixture_design.assembly.polyhedron import Polyhedron, polyhedron_of
 from fixture_design.assembly.rims import ConvexRims, PolygonRims
+from fixture_design.assembly.separation import SeparatingAxes
+from fixture_design.assembly.spatial import SpatialGeometry
 from fixture_design.errors import AssemblyError, UnsupportedError
 from fixture_design.io import assembly_from_data, write_graph
 from fixture_design.viewing import graph_picture, preview
@@ -34,7 +36,7 @@ L_SHAPE = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
 PLATE, HOLE = [[-4, -4], [4, -4], [4, 4], [-4, 4]], [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]]
 
 
-def spatial(moving: dict, fixed: dict, **region: object) -> Assembly:
+def spatial(moving: dict, fixed: dict | list, **region: object) -> Assembly:
     data = {"schema": "fixture_design/assembly/1", "space": "spatial", "moving": moving, "name": "test"}
     return assembly_from_data(data | {"fixed": fixed, "region": region}, "test.yaml")
 
@@ -250,3 +252,20 @@ def test_the_factory_peg_and_hole() -> None:
     walls = {contact.split(" - ")[1] for contact in state_at(assembly, [play, 0, 0.001, 1, 0, 0, 0], 1e-8).contacts}
     assert len([wall for wall in walls if wall.startswith("facet")]) == 1
     assert not state_at(assembly, [play + 1e-6, 0, 0.001, 1, 0, 0, 0]).admissible
+
+
+def test_pieces_along_the_same_axes_are_looked_at_together(tmp_path: Path) -> None:
+    """The four boxes of a plate with a hole; a turned one is alone. How deep they overlap is as one by one."""
+    plate = prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE])
+    turned = {"box": [1, 1, 1], "pose": {"xyz": [3, 0, 0.5], "rpy": [0, 0, 0.5]}}
+    geometry = geometry_of(spatial({"box": [1, 1, 1]}, [plate, turned], x=[-1, 1], y=[-1, 1], z=[-1, 1]))
+    assert isinstance(geometry, SpatialGeometry)
+    assert [len(axes.theirs) for axes in geometry.axes] == [4, 1]
+    q = geometry.random(np.random.default_rng(0), 300)
+    R = rotations.matrices(q[:, 3:])
+    pieces = [piece for body in geometry.fixed for piece in body.pieces]
+    alone = [
+        axes.overlap(R, q[:, :3]) for piece in pieces for axes in SeparatingAxes.of(geometry.moving.pieces[0], [piece])
+    ]
+    np.testing.assert_allclose(geometry.overlap(q), np.max(alone, axis=0), atol=1e-12)
+    assert 0 < np.count_nonzero(geometry.overlap(q) > 0) < 300

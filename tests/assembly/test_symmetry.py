@@ -108,3 +108,16 @@ def test_an_apex_on_an_edge_goes_up_or_aside() -> None:
         assert not (motions.signs[:, facets] > 0).all(axis=1).any()
         assert not motions.may_keep(np.isin(np.arange(5), facets))
         assert motions.may_keep(np.arange(5) == facets[0])
+
+
+def test_of_sets_that_are_images_one_is_tried(tmp_path: Path) -> None:
+    """As many as there are orbits of pairs of pairs, each with an image of every set in it."""
+    symmetries = symmetries_of(geometry_of(peg(tmp_path, [1, 1, 1], z=[-0.4, 0.3])))
+    count = symmetries.pairs.shape[1]
+    sets = np.column_stack(np.triu_indices(count, 1))
+    first = symmetries.first_of_sets(sets)
+    images = np.sort(symmetries.pairs[:, sets], axis=-1)
+    orbits = {frozenset(map(tuple, images[:, k].tolist())) for k in range(len(sets))}
+    assert len(first) == len(orbits) < len(sets) / 20
+    assert {tuple(row) for orbit in orbits for row in orbit} == {tuple(row) for row in sets.tolist()}
+    assert len({frozenset(map(tuple, images[:, k].tolist())) for k in first}) == len(orbits)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from fixture_design.assembly import Assembly, ContactStateGraph, Region, state_graph
 from fixture_design.io import assembly_from_data, read_assembly
 from tests.assembly.parts import FIGURE_14, of_polygons, random_polygon
+from tests.assembly.solids import prism
+from tests.assembly.test_not_convex import HOLE, PLATE, spatial
 
 CUBE: dict = {
     "schema": "fixture_design/assembly/1",
@@ -48,3 +52,14 @@ def test_boxes_with_fewer_symmetries(benchmark, box: list) -> None:
     assembly = assembly_from_data(CUBE | {"moving": {"box": box}}, "box.yaml")
     graph: ContactStateGraph = benchmark.pedantic(state_graph, (assembly,), rounds=1)
     assert len(graph.states) == 27
+
+
+@pytest.mark.benchmark(group="states")
+@pytest.mark.parametrize("rotation", [0.1, None])
+def test_a_cube_over_a_square_hole(benchmark, tmp_path: Path, rotation: float | None) -> None:
+    """Turned a little, and at any rotation: 8 s, and 60 s on two processors."""
+    plate = prism(tmp_path / "plate.obj", PLATE, -2, 0, [HOLE])
+    region: dict = {"x": [-0.15, 0.15], "y": [-0.15, 0.15], "z": [-0.4, 0.3] if rotation else [-0.9, 0.9]}
+    assembly = spatial({"box": [1, 1, 1]}, plate, **region, **({"rotation": rotation} if rotation else {}))
+    graph: ContactStateGraph = benchmark.pedantic(state_graph, (assembly,), {"samples": 4}, rounds=1)
+    assert len(graph.states) == 161 if rotation else len(graph.states) > 39_000
