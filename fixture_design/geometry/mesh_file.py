@@ -29,6 +29,8 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
         FileFormatError: missing, or not readable as what its name says.
     """
     where = {"source": source or file, "place": place}
+    if file.is_dir():
+        raise FileFormatError(f"this is a folder: {str(file)!r:.200}", expected="a mesh", **where)
     if file.suffix.lower() not in MESH_ENDINGS:
         raise UnsupportedError(
             f"cannot read meshes of kind {file.suffix or file.name!r}",

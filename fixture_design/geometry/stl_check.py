@@ -69,8 +69,8 @@ def _text_problem(file: Path) -> StlProblem | None:
         return None
     if "solid" not in text or "facet" not in text:
         start = text.strip()[:30]
-        found = f"text that starts with {start!r}" if start else "nothing but blanks"
-        return StlProblem("the file is not STL", found, "`solid`, or a binary STL file")
+        found = f"text that starts with {start!r}, and no facet" if start else "nothing but blanks"
+        return StlProblem("the file is not STL", found, "`solid` and facets, or a binary STL file")
     last = text.rstrip().rpartition("\n")[2].strip()
     return StlProblem(
         "the STL file is cut off: its last solid has no `endsolid`",

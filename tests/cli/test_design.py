@@ -238,6 +238,16 @@ def test_wrong_tasks_are_told_in_one_line(command: Command, tmp_path: Path, old:
     assert len(ran.err.strip().splitlines()) == 1
 
 
+def test_what_is_no_part_is_told(command: Command, tmp_path: Path) -> None:
+    cut = tmp_path / "cut.stl"
+    cut.write_text("solid\n")
+    for given, said in ((tmp_path, "this is a folder"), (cut, "no facet")):
+        ran = command("design", given)
+        assert ran.code == 2
+        assert said in ran.err
+        assert len(ran.err.strip().splitlines()) == 1
+
+
 def test_inputs_are_not_overwritten(command: Command, box: Path, tmp_path: Path) -> None:
     before = box.read_bytes()
     for option in ("-o", "--urdf", "--csv"):
