@@ -15,7 +15,7 @@ from fixture_design.design.drawing_up import fresh_names, new_element
 from fixture_design.design.hitting import free_motion
 from fixture_design.design.problem import Problem
 from fixture_design.design.removing import balance_of
-from fixture_design.design.staged import named
+from fixture_design.design.staged import named_by_stages
 from fixture_design.design.steps import Step, in_world, stopped, unnoticed
 from fixture_design.layout import Element, Layout, PointTip, SoftTip, SphereTip
 
@@ -46,7 +46,7 @@ def changed(asked: Layout, problem: Problem, locators: Indices, clamps: Indices)
     for role, letter, chosen in roles:
         leaving = [e for e in asked.elements if e.role == role and e.name not in after]
         coming = [int(i) for i in chosen if known[int(i)] is None]
-        pairs = _nearest_pairs(problem, leaving, coming, named(asked))
+        pairs = _nearest_pairs(problem, leaving, coming, named_by_stages(asked))
         fresh = fresh_names(letter, taken)
         for index in coming:
             old = pairs.get(index)

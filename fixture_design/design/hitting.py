@@ -60,7 +60,6 @@ def fewest_stopping(
     spacing: float = 0.0,
     standing: Standing | None = None,
     most_cuts: int = MOST_CUTS,
-    known: Sequence[Vector] = (),
     enough: float = np.inf,
     tolerances: Tolerances = DEFAULT,
     cancelled: Callable[[], bool] = lambda: False,
@@ -72,7 +71,6 @@ def fewest_stopping(
         costs: shape (len(pool),), around 1; by default all 1, and the fewest are sought.
         places, spacing: two of the pool closer than this are not chosen together.
         standing: nor are two that are in each other's way.
-        known: motions to begin with, that ``base`` leaves free.
         enough: the search ends where the bound reaches this, with or without a choice.
     """
     base, pool = np.asarray(base, dtype=np.int64), np.asarray(pool, dtype=np.int64)
@@ -83,8 +81,8 @@ def fewest_stopping(
     free = free_motion(flat(rows, np.concatenate([base, pool])), tolerances)
     if free is not None:
         return Hitting(None, len(pool) + 1, free, np.empty((0, dimension)))
-    motions = [motion for motion in known if not stops(rows[base], motion, tolerances.near).any()]
-    cuts = [stops(rows[pool], motion, tolerances.near) for motion in motions]
+    motions: list[Vector] = []
+    cuts: list[Mask] = []
     apart: list[tuple[int, int]] = []
     bound, exact = 0, False
 

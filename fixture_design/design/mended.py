@@ -15,7 +15,7 @@ from fixture_design.design.problem import Problem
 from fixture_design.design.raising import fewest_raised
 from fixture_design.design.result import ChangeBound, DesignResult, closure_margin
 from fixture_design.design.shortfall import failing
-from fixture_design.design.staged import named
+from fixture_design.design.staged import named_by_stages
 from fixture_design.design.ways import Ways
 from fixture_design.layout import Answer, Layout, Verdict
 
@@ -82,7 +82,7 @@ def _drawn_up(
     """The changed layout with its verdict and the record of changes; preloads chosen where forces ask for it."""
     locators, clamps = best
     after, steps = changed(asked, problem, locators, clamps)
-    gone = named(asked) & {step.element for step in steps if step.action == "removed"}
+    gone = named_by_stages(asked) & {step.element for step in steps if step.action == "removed"}
     if gone:
         raise NamedLeavesError(gone)
     verdict = ways.verify(after)

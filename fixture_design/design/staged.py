@@ -24,7 +24,7 @@ def words(layout: Layout) -> tuple[set[Requirement], set[Requirement]]:
     return of_locators, of_others
 
 
-def named(layout: Layout) -> frozenset[str]:
+def named_by_stages(layout: Layout) -> frozenset[str]:
     """Elements that some stage names."""
     return frozenset(element_name(active) for stage in layout.stages for active in stage.active if active not in ROLES)
 

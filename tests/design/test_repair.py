@@ -124,9 +124,6 @@ def test_spatial_layouts_are_repaired_and_fixed_elements_stay(seed: int) -> None
     spots = box(6, seed)
     elements = drawn(spots, seed, 4 + seed, seed % 3)
     result = repair(layout(spots, elements, OPEN), Fake(spots))
-    if result.satisfied is Answer.NO:
-        assert seed % 3
-        return
     confirm(result, elements)
 
 
