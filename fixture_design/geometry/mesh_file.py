@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from fixture_design.errors import FileFormatError, InputError, UnsupportedError
@@ -29,7 +30,7 @@ def read_mesh(file: Path, place: str | None = None, source: Path | None = None) 
         FileFormatError: missing, or not readable as what its name says.
     """
     where = {"source": source or file, "place": place}
-    if file.is_dir():
+    if os.path.isdir(file):  # a name may be too long for `Path.is_dir`
         raise FileFormatError(f"this is a folder: {str(file)!r:.200}", expected="a mesh", **where)
     if file.suffix.lower() not in MESH_ENDINGS:
         raise UnsupportedError(

@@ -112,12 +112,14 @@ def test_bad_input(
     library = lines(tmp_path / "lib.jsonl", [planar("a")])
     before = library.read_bytes()
     (tmp_path / "notes.txt").write_text("notes\n")
+    (tmp_path / "cutter.csv").write_text("x,y,z,fx,fy,fz\n0,0,0,1,0,0\n")
     ran = command("batch", *arguments)
     assert (ran.code, ran.out) == (2, "")
     assert words in ran.err
     assert len(ran.err.splitlines()) == 1
     assert library.read_bytes() == before
     assert (tmp_path / "notes.txt").read_text() == "notes\n"
+    assert (tmp_path / "cutter.csv").read_text().startswith("x,y,z")
 
 
 def test_against_an_earlier_run_with_page_and_table(command: Callable, tmp_path: Path) -> None:
