@@ -46,6 +46,7 @@ def graph() -> ContactStateGraph:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_the_factory_peg(graph: ContactStateGraph) -> None:
     """What follows where a circle is on the rim, by hand: cell by cell around the point at which it is."""
     found = transitions(graph)
@@ -62,6 +63,7 @@ def test_the_factory_peg(graph: ContactStateGraph) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_every_seed_finds_the_same(graph: ContactStateGraph, seed: int) -> None:
     other = state_graph(graph.assembly, samples=4, seed=seed)
@@ -70,6 +72,7 @@ def test_every_seed_finds_the_same(graph: ContactStateGraph, seed: int) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_each_transition_is_a_feasible_path(graph: ContactStateGraph) -> None:
     geometry = geometry_of(graph.assembly)
     for edge in graph.transitions:
@@ -77,6 +80,7 @@ def test_each_transition_is_a_feasible_path(graph: ContactStateGraph) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_random_motions_show_no_other_transition(graph: ContactStateGraph) -> None:
     found = borders(graph, geometry_of(graph.assembly), seed=3, count=4000)
     assert found - transitions(graph) == set()
@@ -84,6 +88,7 @@ def test_random_motions_show_no_other_transition(graph: ContactStateGraph) -> No
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1500)
 def test_another_resolution(tmp_path: Path) -> None:
     """A bevelled peg at two resolutions of its mesh and the plate's."""
     bevelled, region = [(0.0, 0.7), (0.2, 0.9), (3.0, 0.9)], {"z": [-0.5, 0.3], "rotation": 0.2}
