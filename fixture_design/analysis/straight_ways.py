@@ -90,9 +90,8 @@ class DirectionCone:
         return -max((_nominal(c, i, direction) for c, i in _clauses(self.contacts)), default=-1.0)
 
     def slides(self, direction: Point) -> tuple[str, ...]:
-        """Contacts that it slides along: some clause has no alternative that it leaves."""
-        sliding = [c.name for c, i in _clauses(self.contacts) if _nominal(c, i, direction) >= -self.tolerances.near]
-        return tuple(dict.fromkeys(sliding))
+        """Contacts that it slides along."""
+        return slid_along(self.contacts, direction, self.tolerances.near)
 
     def candidates(self, preferred: Sequence[Point] = ()) -> list[Point]:
         """Directions worth trying, all admitted, each once: the best ones, ``preferred``, up, the rays, mixtures."""
@@ -179,6 +178,12 @@ def clause_value(contact: Contact, clause: int, direction: Point) -> float:
                 off = np.zeros_like(direction)
         values.append(float(unit_normal(normal) @ off) + error * float(np.linalg.norm(off)))
     return min(values)
+
+
+def slid_along(contacts: Sequence[Contact], direction: Point, near: float) -> tuple[str, ...]:
+    """Names of contacts of which some clause has no alternative that a unit direction leaves by more than ``near``."""
+    sliding = [contact.name for contact, i in _clauses(contacts) if _nominal(contact, i, direction) >= -near]
+    return tuple(dict.fromkeys(sliding))
 
 
 def _along_surface(contact: Contact, index: int, direction: Point) -> Point:

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fixture_design.assembly.completion import connect
+from fixture_design.assembly.completion import connect, padded
 from fixture_design.assembly.contact_geometry import ContactGeometry, weights
 from fixture_design.assembly.following import held
 from fixture_design.assembly.known_states import KnownStates
@@ -64,8 +64,7 @@ def _linked(known: KnownStates, tight: State, loose: State) -> bool:
 
 def _chosen(found: Sorted, count: int) -> np.ndarray:
     """The pairs of a state, once for each of some configurations; none: -1."""
-    pairs = np.flatnonzero(found.touching[0])
-    return np.repeat((pairs if pairs.size else np.array([-1]))[None], count, axis=0)
+    return np.repeat(padded(found.touching[:1]), count, axis=0)
 
 
 def _back(known: KnownStates, tight: State, loose: State) -> None:

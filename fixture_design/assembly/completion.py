@@ -39,6 +39,9 @@ _LOOKED_AT = (0.03, 0.1, 0.3, 0.6, 1.0)
 #: Where it is looked at whether they begin as they go on, and how far aside they may be there, relative to the way [-].
 _BEGINNING, _OFF_COURSE = (0.003, 0.01), 0.25
 
+#: Starts for each state that only unclear configurations tell of, and how far beside these, relative to the radius [-].
+_AGAIN, _BESIDE = 30, (0.01, 0.03, 0.1)
+
 #: Generations after which the search ends in any case.
 _MOST_GENERATIONS = 40
 
@@ -110,7 +113,7 @@ def _loosened(known: KnownStates, start: Sorted) -> Sorted:
     geometry = known.geometry
     rows, displacements, kept = _modes(geometry, start)
     fresh = np.flatnonzero(~known.linked(start.touching[rows], kept))
-    proposed, unclear = propose(geometry, start[rows[fresh]], displacements[fresh], _padded(kept[fresh]))
+    proposed, unclear = propose(geometry, start[rows[fresh]], displacements[fresh], padded(kept[fresh]))
     known.doubt(unclear)
     ends, most = [start[np.zeros(0, dtype=int)]], 1
     # many motions lead from one state to one other: the first that does is enough
@@ -132,7 +135,7 @@ def tighten(known: KnownStates, start: Sorted, rng: np.random.Generator) -> Sort
     rows = np.repeat(np.arange(len(start)), count)
     drawn = rng.normal(size=(len(start), _DIRECTIONS, geometry.dimension))
     wished = np.concatenate([np.broadcast_to(directions, (len(start), *directions.shape)), drawn], axis=1)
-    stopped = trace(geometry, start[rows], _padded(start.touching)[rows], wished.reshape(len(rows), -1))
+    stopped = trace(geometry, start[rows], padded(start.touching)[rows], wished.reshape(len(rows), -1))
     before = sort_configurations(geometry, stopped.before)
     connect(known, stopped.ends, before)
     return stopped.ends
@@ -195,11 +198,7 @@ def again(known: KnownStates, rng: np.random.Generator) -> Sorted:
     return onto_all(geometry, geometry.moved(q, np.where(geometry.free, away, 0.0)), touching)
 
 
-#: Starts for each state that only unclear configurations tell of, and how far beside these, relative to the radius [-].
-_AGAIN, _BESIDE = 30, (0.01, 0.03, 0.1)
-
-
-def _padded(touching: np.ndarray) -> np.ndarray:
+def padded(touching: np.ndarray) -> np.ndarray:
     """The pairs that touch, one configuration a row, -1 for none."""
     rows, pairs = np.nonzero(touching)
     counts = touching.sum(axis=1)
@@ -222,7 +221,7 @@ def _straight(geometry: ContactGeometry, tight: Sorted, loose: Sorted) -> np.nda
     """Whether straight motions stay in the looser state: where circles roll, contacts may leave a feature, and where
     edges are nearly along each other, what touches is not known well.
     """
-    way, kept = geometry.between(tight.q, loose.q), _padded(loose.touching)
+    way, kept = geometry.between(tight.q, loose.q), padded(loose.touching)
     good = np.ones(len(tight), dtype=bool)
     if isinstance(geometry, RoundGeometry):
         good = _begins(geometry, tight, loose, way, kept)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fixture_design.analysis.straight_ways import slid_along
 from fixture_design.arrays import Point, Vector
 from fixture_design.cli.messages import printable
 from fixture_design.design import Bound, ChangeBound, DesignResult, Step
@@ -52,9 +53,8 @@ def design_in_words(result: DesignResult) -> Iterator[str]:
 def _out_in_words(result: DesignResult, out: Point) -> str:
     """The way out, and what the part slides along on it."""
     words = f"the part comes out along [{', '.join(f'{x:.3g}' for x in np.round(out, 6) + 0.0)}]"
-    contacts = () if result.verdict is None else result.verdict.contacts
-    beside = [c for c in contacts if c.role == "locator" and any(abs(n @ out) <= COPLANAR_ANGLE for n in c.normals)]
-    names = dict.fromkeys(element_name(contact.name) for contact in beside)
+    locators = [c for c in (() if result.verdict is None else result.verdict.contacts) if c.role == "locator"]
+    names = dict.fromkeys(map(element_name, slid_along(locators, out, COPLANAR_ANGLE)))
     return f"{words}, sliding along {', '.join(names)}" if names else words
 
 

@@ -73,9 +73,10 @@ def _searched(asked: Asked) -> DesignResult:
                     found = not_yet_no(found, left_out)
                 found = replace(found, notes=(*found.notes, *left_out_notes))
                 best = found if best is None else better_of(best, found)
-                if cancelled():
+                stopped = cancelled()  # asked once: what is stopped in between is no proof either
+                if stopped:
                     best = _stopped(best)
-                if best.satisfied is Answer.YES or cancelled():
+                if stopped or best.satisfied is Answer.YES:
                     return best if free is None else _instead(best, free, certain)
         certain = best is not None and best.satisfied is Answer.NO
         if best is None or best.layout is not None or best.free is None:

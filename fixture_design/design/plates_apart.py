@@ -12,6 +12,7 @@ a corner may count as in the way though it just passes.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -32,7 +33,7 @@ class Plates:
     middles: Points
     halves: Several
 
-    @property
+    @cached_property
     def there(self) -> Mask:
         """Which elements have a plate."""
         return np.any(self.halves, axis=(1, 2))
